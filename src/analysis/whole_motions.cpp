@@ -214,9 +214,11 @@ FreeMotions FreeMotionsOf(const ModelDef& def, const Structure& s, const Eigen::
   const double most = (unheld.transpose() * stiffness * unheld).cwiseAbs().maxCoeff();
   // Without stiffness, `most` is the rounding error of the reactions.
   const bool resists = most > 1e-12 * stiffness.cwiseAbs().maxCoeff();
+  // Only motions that the joints permit: `rigid` lacks the spins of rods, and a spin has a
+  // stiffness against motions that would separate a joint, since its rows turn with a body.
   Eigen::MatrixXd resisted(held.cols() + s.motions(), rigid.cols());
   resisted << held.transpose() * rigid,
-      (resists ? 1 / most : 0.0) * (effective * (effective.transpose() * stiffness * rigid));
+      (resists ? 1 / most : 0.0) * (unheld * (unheld.transpose() * stiffness * rigid));
   const Eigen::MatrixXd whole = rigid * Nothing(resisted, 1e-11);
   out.rigid = whole.cols();
   if (out.rigid == 0) return out;

@@ -8,7 +8,9 @@ import math
 import pathlib
 import subprocess
 import sys
+import tempfile
 import unittest
+import warnings
 
 import numpy as np
 
@@ -50,6 +52,41 @@ def contact_force_n(trace, axis):
         sign = np.where(trace[f"contact/{slot}/body_a"] < 0, -1, 1)
         total = total + np.nan_to_num(sign * trace[f"contact/{slot}/force_{axis}_n"])
     return total
+
+
+def reduced_stiffness(analysis):
+    """Returns the stiffness matrix over the motions of rods that their common ends permit, without their spins. A rod's
+    name lists its end nodes."""
+    start = taut.Simulation(analysis.robot)
+    bodies = start.bodies
+    first_m = [np.ravel(start.body_position_m(body)) for body in bodies]
+    nodes_m = {name: np.ravel(start.node_position_m(name)) for name in start.nodes}
+
+    def rotated(body, vector):
+        w, *axis = analysis.body_orientation[body]
+        return vector + 2 * np.cross(axis, np.cross(axis, vector) + w * vector)
+
+    def moves(body, arm):
+        rows = np.zeros((3, 6 * len(bodies)))
+        rows[:, 6 * body:6 * body + 3] = np.eye(3)
+        rows[:, 6 * body + 3:6 * body + 6] = np.cross(np.eye(3), arm).T
+        return rows
+
+    held, ends = [], {}
+    for number, body in enumerate(bodies):
+        names = body.split("-")
+        for name in names:
+            row = moves(number, rotated(number, nodes_m[name] - first_m[number]))
+            if name in ends:
+                held.append(row - ends[name])
+            ends[name] = row
+        axis = rotated(number, nodes_m[names[1]] - nodes_m[names[0]])
+        spin = np.zeros((1, 6 * len(bodies)))
+        spin[0, 6 * number + 3:6 * number + 6] = axis / np.linalg.norm(axis)
+        held.append(spin)
+    _, sizes, directions = np.linalg.svd(np.vstack(held))
+    free = directions[np.sum(sizes > 1e-9):].T
+    return free.T @ np.array(analysis.stiffness) @ free
 
 
 class Gallery(unittest.TestCase):
@@ -129,6 +166,29 @@ class Gallery(unittest.TestCase):
         folded_m = height_m[in_turn(trace, (4.75, 5.5))].mean()
         self.assertAlmostEqual(folded_m / (4 * 0.5 * math.cos(math.radians(75))), 1, delta=0.01)
         self.assertAlmostEqual(height_m[-1], height_m[0], delta=0.002)
+
+    def test_a_mast_of_rods_with_ball_joints_is_as_stable_as_one_of_bars(self):
+        text = (SHARE / "models/mast.yaml").read_text()
+        bars = text[text.index("  - match: strut\n"):text.index("  - {match: node, point_mass")]
+        rods = "  - {match: strut, rod: {radius_m: 0.003, mass_kg: 0.02, collides: false, class_k: true}}\n"
+        text = text.replace(bars, rods).replace("  - {match: node, point_mass: {mass_kg: joint_kg}}\n", "")
+        least_n_per_m = {}
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "mast.yaml"
+            path.write_text(text)
+            for stages in (1, 2, 4):
+                with warnings.catch_warnings():  # parameters of the bars are unused
+                    warnings.simplefilter("ignore", taut.InputWarning)
+                    analysis = taut.analyze(taut.load(str(path), stages=stages))
+                least_n_per_m[stages] = analysis.least_stiffness_n_per_m
+                self.assertGreater(np.min(analysis.mechanism_stiffness_n_per_m), 0)
+                # Motions that the joints permit, without the spins of rods: six rigid motions have no stiffness.
+                values = np.linalg.eigvalsh(reduced_stiffness(analysis))
+                self.assertLess(np.abs(values[:6]).max(), 1e-7 * values[-1])
+                self.assertGreater(values[6], 1e-6 * values[-1])
+        self.assertGreater(least_n_per_m[1], least_n_per_m[2])
+        self.assertGreater(least_n_per_m[2], least_n_per_m[4])
+        self.assertGreater(least_n_per_m[4], 1)
 
     def test_struts_of_the_aerial_frame_bear_the_root_of_six_times_the_pretension(self):
         case = command("analyze", str(SHARE / "models/aerial_frame.yaml"), "--modes", "0")["load_cases"][0]
