@@ -65,6 +65,7 @@ const marksOf = (page) => page.evaluate(() => {
   return {
     marks: joints.marks.map(({ rail, bead, foot }) => ({ rail: part(rail), bead: part(bead), foot: part(foot) })),
     lines: [...joints.lines.geometry.getAttribute("position").array],
+    tubes: [...joints.tubes.instanceMatrix.array],
   };
 });
 const near = (a, b, what, within = 1e-6) => assert.ok(length(minus(a, b)) < within, `${what}: ${a}, not ${b}`);
@@ -78,7 +79,7 @@ const turned = ([x, y, z], time_s) => {
 test("MarksAreWhereTheBodiesHoldEachOther", async (t) => {
   for (const time_s of [0, AT_S]) {
     const page = await pageAt(t, time_s);
-    const { marks, lines } = await marksOf(page);
+    const { marks, lines, tubes } = await marksOf(page);
     assert.equal(marks.length, joints.length);
     joints.forEach(({ name, kind, body_a, body_b, from_m, to_m }, i) => {
       const what = `${name} at ${time_s} s`;
@@ -107,6 +108,12 @@ test("MarksAreWhereTheBodiesHoldEachOther", async (t) => {
     near(lines.slice(0, 3), worldPoint(0, distance.from_m, time_s), "a line from a");
     near(lines.slice(3, 6), worldPoint(1, distance.to_m, time_s), "a line to b");
     assert.equal(lines.length, 6);
+    // the tube, whose y axis is the way from a to b and whose other axes are its diameter
+    assert.equal(tubes.length, 16);
+    const [from, to] = [worldPoint(0, distance.from_m, time_s), worldPoint(1, distance.to_m, time_s)];
+    near(tubes.slice(4, 7), minus(to, from), "the direction and length of a bar");
+    near(tubes.slice(12, 15), from.map((value, k) => 0.5 * (value + to[k])), "the middle of a bar");
+    assert.ok(length(tubes.slice(0, 3)) > 0.004 && Math.abs(length(tubes.slice(0, 3)) - length(tubes.slice(8, 11))) < 1e-9);
     await page.context().close();
   }
 });

@@ -10,6 +10,7 @@ import { cableState, type Frame, isSlack } from "../frame";
 import type { Cable, Scene } from "../protocol";
 import { layCable, pointCount, spansOfParts, spanTensions } from "./cable_path";
 import { type Part, release } from "./part";
+import { thinnestStrut } from "./strut_width";
 
 /** Widths of cables without tension and at the end of the scale, relative to the diameter of the thinnest strut. */
 const THINNEST = 0.14;
@@ -18,9 +19,6 @@ const THICKEST = 0.5;
 const MOST = 0.85;
 const FLOOR_PX = 1.25;
 const MARKED_PX = 2;
-/** Reference diameter of a robot without struts, relative to the robot's size. */
-const WITHOUT_STRUTS = 0.012;
-
 export class Cables implements Part {
   readonly object = new Group();
   /** Points of each cable in W, as last drawn. */
@@ -40,8 +38,7 @@ export class Cables implements Part {
   constructor(private readonly scene: Scene, size_m: number) {
     this.points = scene.cables.map((cable) => Array.from({ length: pointCount(cable) }, () => new Vector3()));
     this.lines = scene.cables.map((cable) => this.line(cable, size_m));
-    const radii_m = scene.bodies.flatMap(({ shapes }) => shapes.flatMap(({ kind, radius_m }) => (kind === "rod" ? [radius_m!] : [])));
-    this.diameter_m = radii_m.length > 0 ? 2 * Math.min(...radii_m) : WITHOUT_STRUTS * size_m;
+    this.diameter_m = thinnestStrut(scene, size_m);
     this.widths_m = scene.cables.map(() => 0);
   }
 

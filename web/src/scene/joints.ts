@@ -1,7 +1,8 @@
-// Joints: a small mark for each kind, between the two connected points; supports have a foot.
+// Joints: a small mark for each kind, between the two connected points; supports have a foot. Distance joints (bars)
+// are struts: tubes, with a line inside that remains visible at any distance.
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, Group, LatheGeometry, LineBasicMaterial, LineSegments, Mesh,
-  MeshStandardMaterial, Quaternion, SphereGeometry, Vector2, Vector3,
+  BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, Group, InstancedMesh, LatheGeometry, LineBasicMaterial,
+  LineSegments, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector2, Vector3,
 } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";
@@ -10,6 +11,7 @@ import { VALUES } from "../layout";
 import type { Joint, Scene, Shape, Vec3 } from "../protocol";
 import { type Part, release } from "./part";
 import { worldPoint } from "./poses";
+import { thinnestStrut } from "./strut_width";
 
 const SHARE = 0.014; // radius of a mark, relative to the robot's size, unless a rod there is thicker
 const BEYOND = 1.6; // how far a mark protrudes from its surroundings, as a factor
@@ -55,8 +57,11 @@ export class Joints implements Part {
   readonly meshes: Mesh[];
   /** The points of each joint in W, as last drawn. */
   readonly points: readonly [Vector3, Vector3][];
-  /** Indices of the joints drawn as lines. */
+  /** Indices of the distance joints. */
   readonly distances: readonly number[];
+  /** A tube of diameter and length 1 m for each distance joint. */
+  readonly tubes: InstancedMesh<CylinderGeometry, MeshStandardMaterial>;
+  private readonly diameter_m: number;
   private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
   private marked = -1;
   private theme: Theme = "light";
@@ -72,6 +77,12 @@ export class Joints implements Part {
     this.lines.frustumCulled = false; // its bounds are computed only at the start
     this.lines.visible = this.distances.length > 0;
     this.object.add(this.lines);
+    this.diameter_m = thinnestStrut(scene, size_m);
+    this.tubes = new InstancedMesh(new CylinderGeometry(0.5, 0.5, 1, 12), new MeshStandardMaterial({ roughness: 0.5, metalness: 0 }), this.distances.length);
+    this.tubes.castShadow = true;
+    this.tubes.frustumCulled = false;
+    this.tubes.visible = this.distances.length > 0;
+    this.object.add(this.tubes);
   }
 
   update(frame: Frame): void {
@@ -84,6 +95,15 @@ export class Joints implements Part {
     const positions = this.lines.geometry.getAttribute("position") as BufferAttribute;
     this.distances.forEach((joint, k) => this.points[joint]!.forEach((point, end) => point.toArray(positions.array, 6 * k + 3 * end)));
     positions.needsUpdate = true;
+    const [along, turn, size, place] = [new Vector3(), new Quaternion(), new Vector3(), new Matrix4()];
+    this.distances.forEach((joint, k) => {
+      const [a, b] = this.points[joint]!;
+      const length_m = along.copy(b).sub(a).length();
+      turn.setFromUnitVectors(AXIS_Y, length_m > 0 ? along.divideScalar(length_m) : AXIS_Y);
+      size.set(this.diameter_m, length_m, this.diameter_m);
+      this.tubes.setMatrixAt(k, place.compose(along.copy(a).add(b).multiplyScalar(0.5), turn, size));
+    });
+    this.tubes.instanceMatrix.needsUpdate = true;
   }
 
   /** Highlights a joint; -1: none. */
@@ -94,12 +114,14 @@ export class Joints implements Part {
 
   paint(theme: Theme): void {
     this.theme = theme;
-    const { joint, selected, box } = palette(theme);
+    const { joint, selected, box, rod } = palette(theme);
     this.marks.forEach(({ material, ground }, i) => {
       material.color.set(i === this.marked ? selected : joint);
       ground.color.set(i === this.marked ? selected : box);
     });
-    this.lines.material.color.set(this.distances.includes(this.marked) ? selected : joint);
+    this.lines.material.color.set(this.distances.includes(this.marked) ? selected : rod);
+    this.distances.forEach((index, k) => this.tubes.setColorAt(k, new Color(index === this.marked ? selected : rod)));
+    if (this.tubes.instanceColor) this.tubes.instanceColor.needsUpdate = true;
   }
 
   dispose(): void {
