@@ -23,8 +23,13 @@ exec 3>&1 >"$log" 2>&1
 
 apt_apart "$PWD" deb-src bookworm update
 echo "fetching ${names[*]}" >&3
-apt_apart "$PWD" deb-src bookworm source --download-only "${names[@]}"
 for name in "${names[@]}"; do
+  if [ "$name" = qr-code-generator ]; then  # one file, which Debian does not change
+    apt_apart "$PWD" deb-src bookworm source --tar-only "$name"
+    mkdir "$name" && tar -xf "$name"_*.orig.tar.* --strip-components 1 -C "$name"
+    continue
+  fi
+  apt_apart "$PWD" deb-src bookworm source --download-only "$name"
   dpkg-source --no-check --extract "$name"_*.dsc "$name"
 done
 
