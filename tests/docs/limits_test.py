@@ -37,7 +37,7 @@ CONSTANTS = {
     "heights of all height fields": ("src/description/experiment/ground_keys.h", "kMostHeights"),
     "heights of all packed files": ("src/trace/unpack_limit.h", "kAlwaysUnpackedBytes"),
     "corners of a height formula": ("src/description/experiment/ground.cpp", "kMostByFormula"),
-    "operations and values": ("src/description/experiment/ground.cpp", "kMostSteps"),
+    "operations and operands": ("src/description/experiment/ground.cpp", "kMostSteps"),
     "entries of a mesh's search grid": ("src/sim/geometry/surface_build.cpp", "kEntriesPerTriangle"),
     "MJCF file": ("src/mjcf/xml.cpp", "kMostBytes"),
     "elements and comments": ("src/mjcf/xml.cpp", "kMostElements"),

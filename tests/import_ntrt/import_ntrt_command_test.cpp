@@ -57,11 +57,11 @@ TEST_F(ImportNtrtCommand, WhyCheckRefusesTheModelIsAWarning) {
 }
 
 TEST_F(ImportNtrtCommand, BadInputIsRefused) {
-  const CommandResult none = Taut({"import", "ntrt", "none.yaml", "--length_unit_m", "1"});
+  const CommandResult none = Taut({"import", "ntrt", "absent.yaml", "--length_unit_m", "1"});
   EXPECT_EQ(none.status, 3);
-  EXPECT_EQ(none.errors, "none.yaml: error: cannot open: No such file or directory\n");
+  EXPECT_EQ(none.errors, "absent.yaml: error: cannot open: No such file or directory\n");
   EXPECT_EQ(Taut({"import", "ntrt", ".", "--length_unit_m", "1"}).status, 3);
-  EXPECT_EQ(Taut({"import", "ntrt", "none.yaml"}).status, 2);
+  EXPECT_EQ(Taut({"import", "ntrt", "absent.yaml"}).status, 2);
   Write("s.yaml",
         "nodes: {a: [0, 0, 0], b: [0, 1, 0]}\npair_groups: {rod: [[a, b]], wire: [[a, b]]}\n");
   const CommandResult warned = Taut({"import", "ntrt", "s.yaml", "--length_unit_m", "1"});

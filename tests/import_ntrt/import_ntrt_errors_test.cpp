@@ -143,7 +143,7 @@ TEST_F(NtrtYaml, EarlierBondsGoWithWhatIsMoved) {
   EXPECT_TRUE(import);
   EXPECT_EQ(Shown(found),
             "s.yaml:5:20: warning: this bond moves \"q\", to which earlier bonds are attached: "
-            "NTRT leaves the ends of these bonds behind, taut moves them, too (move this bond "
+            "NTRT leaves the ends of these bonds behind, taut moves them, too (list this bond "
             "before the others)\n");
 }
 

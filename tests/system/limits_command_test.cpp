@@ -93,8 +93,8 @@ TEST_F(Limits, NumbersOutOfRangeAreBadUsage) {
 
 TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
   for (const char* const command : {"run", "check"}) {
-    ExpectRefused({command, "none.yaml"}, 3,
-                  "none.yaml: error: cannot open: No such file or directory\n");
+    ExpectRefused({command, "absent.yaml"}, 3,
+                  "absent.yaml: error: cannot open: No such file or directory\n");
     ExpectRefused({command, "."}, 3, ".: error: the path is a directory, not a file\n");
   }
   ExpectRefused({"learn", "."}, 3, ".: error: the path is a directory, not a file\n");
