@@ -43,19 +43,26 @@ inline std::vector<double> RandomContactNumbers(math::Random& random, double max
   }
   return out;
 }
-/// Returns the numbers of a cable in the format of ReadCable. Half of the cables have no damper,
-/// and half no limit.
-inline std::vector<double> RandomCableNumbers(math::Random& random) {
+/// Returns the numbers of a cable's law, the first ones of the format of ReadCable. Half of the
+/// cables have no damper, and half no limit.
+inline std::vector<double> RandomLawNumbers(math::Random& random) {
   const double start = random.Uniform(-1, 1), end = random.Uniform(-1, 1);
   const double spring = random.Uniform(0.1, 1), damper = random.Uniform(-1, 1);
   const double winding = random.Uniform(-0.3, 0.3), upper = random.Uniform(-1, 1);
-  std::vector<double> out = {
-      1, start, end, spring, std::max(damper, 0.0), winding, upper > 0.2 ? upper : 1e300, 0};
+  return {1, start, end, spring, std::max(damper, 0.0), winding, upper > 0.2 ? upper : 1e300, 0};
+}
+/// Appends the two bodies of a cable, the other numbers of the format of ReadCable.
+inline void AddCableBodies(math::Random& random, std::vector<double>& out) {
   for (int i = 0; i < 2; ++i) {
     AddMasses(random, out);
     AddVector(Unit(RandomVector(random)), out);
     for (const double x : RandomRows<3>(random)) out.push_back(x);
   }
+}
+/// Returns the numbers of a cable in the format of ReadCable.
+inline std::vector<double> RandomCableNumbers(math::Random& random) {
+  std::vector<double> out = RandomLawNumbers(random);
+  AddCableBodies(random, out);
   return out;
 }
 
@@ -68,13 +75,21 @@ inline Contact2 RandomContact(math::Random& random, bool one_direction, double m
 struct OwnedCable {
   sim::Link<Num, 1> links[2];
   Cable law;
-  explicit OwnedCable(math::Random& random) {
-    const std::vector<double> numbers = RandomCableNumbers(random);
+  explicit OwnedCable(const std::vector<double>& numbers) {
     LaneReader<Num> in{numbers.data(), 0};
     law = ReadCable(in, links);
   }
+  explicit OwnedCable(math::Random& random) : OwnedCable(RandomCableNumbers(random)) {}
   OwnedCable(const OwnedCable&) = delete;
 };
+/// Returns a cable without bodies from the numbers of its law.
+inline Cable LawOf(const std::vector<double>& numbers) {
+  const auto number = [&numbers](std::size_t i) { return Num::Splat(numbers[i]); };
+  Cable law;
+  law.SetLaw(number(1), number(2), number(3), number(4), number(5));
+  law.upper = number(6);
+  return law;
+}
 
 /// Returns the difference of the velocities from their targets, which is zero in (C1) and (C2).
 inline Rows<3> Excess(const Contact2& c, const Rows<3>& u) {
