@@ -4,15 +4,17 @@ integration does not compile them for WebAssembly, so a moved function would go 
 
   browser_sources.py BUILD     BUILD: a build of all of taut, for its objects and its compiler
 
-Sources that only the browser's build has are compiled for this machine; all other objects exist."""
+Sources that only the browser's build has are compiled for this machine, those with the same command together;
+all other objects exist."""
+import functools
 import json
 import os
 import pathlib
 import re
 import shlex
+import shutil
 import subprocess
 import sys
-import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ABSENT = {"std::bit_cast": "__builtin_bit_cast"}
@@ -89,19 +91,38 @@ def objects_made(here, wanted):
 
 def objects_of(build, folder):
     """Returns an object for each source path relative to the top folder."""
-    wanted, objects = browser_commands(build, folder), {}
+    wanted = browser_commands(build, folder)
     check_text(wanted, folder)
     made = objects_made(commands_of(build), set(wanted))
-    for number, (path, entry) in enumerate(sorted(wanted.items())):
+    launcher = [word for word in os.environ.get("CMAKE_CXX_COMPILER_LAUNCHER", "").split(";") if word]  # compiler cache
+    for number, (command, paths) in enumerate(missing_units(wanted, made)):
+        unit = os.path.join(folder, f"{number}.cpp")
+        with open(unit, "w", encoding="utf-8") as file:
+            file.writelines(f'#include "{path}"\n' for path in paths)
+        compiled = os.path.join(folder, f"{number}.o")
+        output_of(*launcher, *command, "-O0", "-I/usr/include", "-o", compiled, "-c", unit)
+        made.update(dict.fromkeys(paths, compiled))
+    return {os.path.relpath(path, ROOT): made[path] for path in sorted(wanted)}
+
+
+def missing_units(wanted, made):
+    """Returns pairs of a compiler command without files, and the sources that it compiles together. These have no object
+    in `made`. Sources of a layer are together, as in unity builds; in apps/browser, each is alone, because names clash."""
+    units = {}
+    for path, entry in sorted(wanted.items()):
         if path not in made:
             words = shlex.split(entry["command"])
-            made[path] = words[words.index("-o") + 1] = os.path.join(folder, f"{number}.o")
-            plain = [word for word in words if not re.fullmatch(r"-O.*|-flto|-s[A-Z_]+=.*", word)]
-            output_of(*plain, "-O0", "-I/usr/include")
-        objects[os.path.relpath(path, ROOT)] = made[path]
-    return objects
+            for option in ("-o", "-c"):
+                at = words.index(option)
+                del words[at:at + 2]
+            plain = tuple(word for word in words if not re.fullmatch(r"-O.*|-flto|-s[A-Z_]+=.*", word))
+            parts = os.path.relpath(path, ROOT).split(os.sep)
+            together = parts[1] if parts[0] == "src" else path
+            units.setdefault((plain, together), []).append(path)
+    return [(command, paths) for (command, _), paths in units.items()]
 
 
+@functools.cache  # a unity build has one object for many sources
 def symbols_of(made):
     """Returns the taut symbols that an object defines, and the symbols that it needs."""
     has, wants = set(), set()
@@ -114,8 +135,12 @@ def symbols_of(made):
 
 def main():
     build = os.path.abspath(sys.argv[1])
-    with tempfile.TemporaryDirectory() as folder:
+    folder = os.path.join(build, "browser_sources")  # always the same, for the compiler cache
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
         symbols = {name: symbols_of(made) for name, made in objects_of(build, folder).items()}
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
     who_has = {}
     for name, (has, _) in symbols.items():
         for symbol in has:
