@@ -20,6 +20,10 @@ UNITS = {X: 1e3, Z: 1e3, TURN: 180 / math.pi}   # mm, mm, degrees
 SD = {X: 0.00074, Z: 0.0008, TURN: math.radians(0.62)}  # spread of the five tests
 CAMERA = [f"{{channel: {X}, offset: {{sd: 0.002}}}}", f"{{channel: {Z}, offset: {{sd: 0.002}}}}",
           f"{{channel: {TURN}, offset: {{sd: 0.01}}}}"]
+CAMERA_PER_TEST = [f"{{channel: {X}, offset: {{sd: 0.002}}, each: experiment}}",
+                   f"{{channel: {Z}, offset: {{sd: 0.002}}, each: experiment}}",
+                   f"{{channel: {TURN}, offset: {{sd: 0.01}}, each: experiment}}"]
+FIRST = 10                   # set points of a held-out test that determine its camera offset
 WOUND = "{parameter: wound, prior: {sd: 0.01}}"
 MASS = "{parameter: mass_kg, low: 0.3, high: 2, scale: 0.03}"
 MASS_PRIOR = "{parameter: mass_kg, prior: {sd: 0.033}}"
@@ -121,6 +125,48 @@ class Splits:
         self.poses = points
 
 
+def offset(points, test, channel, last=None, key="fitted"):
+    """Returns the mean of measured minus computed values of a test up to set point `last`."""
+    return statistics.mean(p["measured"] - p[key] for p in points if p["experiment"] == test and
+                           p["channel"] == channel and (last is None or number(p) <= last))
+
+
+class CameraPerTest:
+    """A camera offset for each test. The offsets of the two held-out tests come from their first set points, from the
+    offsets of the three fitted tests, or from both; all other set points are predicted."""
+
+    WAYS = ("untuned", "training", "first", "both", "all")
+
+    def __init__(self, taut, data):
+        points = {way: [] for way in self.WAYS}
+        self.good = 0
+        for train in itertools.combinations(TESTS, 3):
+            test = [t for t in TESTS if t not in train]
+            fit = fits.run(taut, f"per_test_{''.join(map(str, train))}",
+                           data.text(CAMERA_PER_TEST + [WOUND], train, test))
+            self.good += not [word for word in fit.judgements() if "held-out" not in word]
+            fitted = [p for p in fit.points("train") if number(p) <= UP[1]]
+            held = [p for p in fit.points() if number(p) <= UP[1]]
+            for channel in UNITS:
+                known = [fit.parameters[f"offset {channel} t{t}"]["value"] for t in train]
+                # Variance between tests, and of the first set points about the whole test.
+                between = statistics.variance(known)
+                drift = statistics.mean(offset(fitted, f"t{t}", channel, FIRST) ** 2 for t in train)
+                for name in {p["experiment"] for p in held}:
+                    first = offset(held, name, channel, FIRST)
+                    mean = statistics.mean(known)
+                    offsets = {"training": mean, "first": first,
+                               "both": mean + between / (between + drift) * (first - mean),
+                               "all": offset(held, name, channel)}
+                    for p in held:
+                        if p["experiment"] != name or p["channel"] != channel or number(p) <= FIRST:
+                            continue
+                        points["untuned"].append(dict(p, fitted=p["untuned"]))
+                        for way, x in offsets.items():
+                            points[way].append(dict(p, fitted=p["fitted"] + x))
+        self.errors = {way: pooled(points[way], "fitted") for way in self.WAYS}
+
+
 def value(fit, name):
     p = fit.parameters[name]
     error = max(p["se"] or math.inf, p["se_jackknife"] or 0)
@@ -136,6 +182,7 @@ def page(taut):
     data = Data(taut.folder.resolve())
     camera = Splits(taut, data, "camera", CAMERA + [WOUND])
     one = camera.fits[0]
+    per_test = CameraPerTest(taut, data)
     repeated = Repeated(one.points("train") + one.points())
     untuned_up = {}
     for fit in camera.fits:
@@ -166,6 +213,14 @@ def page(taut):
             ["all set points, two held-out tests, fitted to the other three", *errors(camera.fitted)]]),
         "spread": " / ".join(errors([repeated.spread(c) for c in UNITS])),
         "floor": " / ".join(errors([repeated.floor(c) for c in UNITS])),
+        "per_test": table(["offset of the camera in a held-out test", "error in x [mm]", "error in y [mm]",
+                           "error in turn [degrees]"],
+                          [[name, *errors(per_test.errors[way])] for name, way in (
+                              ("none, untuned", "untuned"), ("mean offset of the three fitted tests", "training"),
+                              (f"mean of its first {FIRST} set points", "first"),
+                              ("both, weighted by their variances", "both"),
+                              ("mean of all its set points (not a prediction)", "all"))]),
+        "first": str(FIRST), "good": str(per_test.good),
         "parameters": table(["parameter", "unit", "nominal", "estimate", "verdict"], parameters),
         "judgement": "; ".join(one.judgements()) or "good",
         "halves": table(["parameters fitted to the lower half", "error in x [mm]", "error in y [mm]", "error in turn [degrees]",
