@@ -225,5 +225,5 @@ def page(taut):
         "judgement": "; ".join(one.judgements()) or "good",
         "halves": table(["parameters fitted to the lower half", "error in x [mm]", "error in y [mm]", "error in turn [degrees]",
                          "verdict on the fit", "verdicts on the parameters"], rows),
-        "mass": f"{mass / 0.655:.2f}", "condition": f"{condition:.0e}" if condition else "infinite",
+        "mass": f"{mass / 0.655:.2f}", "condition": f"{condition:.2g}" if condition else "infinite",
     })
