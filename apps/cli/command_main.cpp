@@ -36,7 +36,7 @@ struct CommandGroup {
 /// Commands in the order of the help texts; the first group contains a beginner's first steps.
 const std::vector<CommandGroup> kGroups{
     {"First steps", {AddNew, AddCheck, AddView, AddRun, AddReport}},
-    {"Analysis and optimization", {AddCompare, AddFit, AddAnalyze, AddLearn, AddSize}},
+    {"Analysis and optimization", {AddCompare, AddPlot, AddFit, AddAnalyze, AddLearn, AddSize}},
     {"Files and other programs", {AddList, AddGait, AddExport, AddImport, AddTrace, AddSchema}},
     {"Hardware and help", {AddRobot, AddHelp}}};
 

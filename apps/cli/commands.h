@@ -28,6 +28,7 @@ void AddImport(CLI::App& app, int& exit_code);
 void AddLearn(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddNew(CLI::App& app, int& exit_code);
+void AddPlot(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
 void AddRobot(CLI::App& app, int& exit_code);
 void AddSchema(CLI::App& app, int& exit_code);

@@ -63,7 +63,13 @@ void PrintComparison(const Comparison& comparison, const CompareArguments& given
 }
 
 void SayNextStep(const CompareArguments& given) {
-  if (!given.page.empty()) return SayNextProgram({"xdg-open", given.page});
+  if (!given.page.empty()) {
+    // Only the reference can have a mapping in `taut plot`.
+    std::vector<std::string> measured{"--with", given.path_b};
+    if (!given.map_b.empty()) measured.insert(measured.end(), {"--map", given.map_b});
+    if (given.map_a.empty()) SayFigure({given.path_a}, given.page, measured);
+    return SayNextProgram({"xdg-open", given.page});
+  }
   if (given.map_a.empty() && given.map_b.empty()) {
     return SayNext({"report", given.path_a, "--compare", given.path_b});
   }

@@ -32,6 +32,7 @@ void AddExport(CLI::App& app, int& exit_code) { AddNotBuilt(app, "export", exit_
 void AddFit(CLI::App& app, int& exit_code) { AddNotBuilt(app, "fit", exit_code); }
 void AddImport(CLI::App& app, int& exit_code) { AddNotBuilt(app, "import", exit_code); }
 void AddLearn(CLI::App& app, int& exit_code) { AddNotBuilt(app, "learn", exit_code); }
+void AddPlot(CLI::App& app, int& exit_code) { AddNotBuilt(app, "plot", exit_code); }
 void AddRobot(CLI::App& app, int& exit_code) { AddNotBuilt(app, "robot", exit_code); }
 void AddSize(CLI::App& app, int& exit_code) { AddNotBuilt(app, "size", exit_code); }
 void AddTrace(CLI::App& app, int& exit_code) { AddNotBuilt(app, "trace", exit_code); }

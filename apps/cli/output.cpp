@@ -31,6 +31,13 @@ std::string ShellWord(const std::string& word) {
   return quoted + "'";
 }
 
+/// Prints a command after a label.
+void SayCommand(const char* label, const std::vector<std::string>& words) {
+  std::string line = fmt::format("{}:", label);
+  for (const std::string& word : words) line += " " + ShellWord(word);
+  fmt::print("{}\n", Printable(line));
+}
+
 /// Returns the largest tensions of a group of cables, and their means in the phases of the run.
 std::string TensionLine(const RunSummary& summary, const CableGroup& group) {
   const auto range = [&](const auto& value) {
@@ -93,11 +100,18 @@ void SayNext(std::vector<std::string> words) {
   SayNextProgram(words);
 }
 
-void SayNextProgram(const std::vector<std::string>& words) {
-  std::string line = "next:";
-  for (const std::string& word : words) line += " " + ShellWord(word);
-  fmt::print("{}\n", Printable(line));
+void SayFigure(std::vector<std::string> runs, const std::string& page,
+               const std::vector<std::string>& more) {
+  constexpr std::size_t kMostRuns = 4;  // of `taut plot`
+  runs.resize(std::min(runs.size(), kMostRuns));
+  std::vector<std::string> words{"taut", "plot"};
+  words.insert(words.end(), runs.begin(), runs.end());
+  words.insert(words.end(), more.begin(), more.end());
+  words.insert(words.end(), {"--out", std::filesystem::path(page).replace_extension("pdf")});
+  SayCommand("figure", words);
 }
+
+void SayNextProgram(const std::vector<std::string>& words) { SayCommand("next", words); }
 
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
                                   RunOptions options, bool csv, Diagnostics& out,

@@ -41,6 +41,11 @@ int WriteOrPrint(const std::string& path, const std::string& text);
 /// runs/hang`.
 void SayNext(std::vector<std::string> words);
 
+/// Prints the command that draws channels of runs for a paper: `figure: taut plot runs/hang ...`.
+/// `page`: the page of the same runs, whose name the figure gets.
+void SayFigure(std::vector<std::string> runs, const std::string& page,
+               const std::vector<std::string>& more = {});
+
 /// Same as `SayNext` for another program, whose name is the first word.
 void SayNextProgram(const std::vector<std::string>& words);
 

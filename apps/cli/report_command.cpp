@@ -41,6 +41,9 @@ int Report(ReportArguments args) {
     return unwritten ? kFailed : kBadInput;
   }
   fmt::print("Report: {}\n", path);
+  std::vector<std::string> runs{args.trace};
+  runs.insert(runs.end(), args.compare.begin(), args.compare.end());
+  SayFigure(runs, path);
   SayNextProgram({"xdg-open", path});
   return kOk;
 }

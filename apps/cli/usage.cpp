@@ -46,11 +46,18 @@ bool IsFlag(const std::string& word) {
 
 /// Returns the command of taut for a name that other programs use; empty if there is none.
 std::string CommandMeant(const std::string& word) {
-  static const std::map<std::string, std::string> kSynonyms{
-      {"convert", "trace convert"}, {"create", "new"}, {"diff", "compare"},
-      {"identify", "fit"},          {"init", "new"},   {"optimize", "learn"},
-      {"plot", "report"},           {"show", "view"},  {"simulate", "run"},
-      {"train", "learn"},           {"tune", "learn"}, {"validate", "check"}};
+  static const std::map<std::string, std::string> kSynonyms{{"convert", "trace convert"},
+                                                            {"create", "new"},
+                                                            {"diff", "compare"},
+                                                            {"draw", "plot"},
+                                                            {"identify", "fit"},
+                                                            {"init", "new"},
+                                                            {"optimize", "learn"},
+                                                            {"show", "view"},
+                                                            {"simulate", "run"},
+                                                            {"train", "learn"},
+                                                            {"tune", "learn"},
+                                                            {"validate", "check"}};
   const auto found = kSynonyms.find(word);
   return found == kSynonyms.end() ? "" : found->second;
 }

@@ -70,6 +70,7 @@
 #include "taut/study.h"
 #include "taut/summary.h"
 #include "taut/trace.h"
+#include "taut/trace_channels.h"
 #include "taut/trace_pose.h"
 #include "taut/types.h"
 #include "taut/variation.h"

@@ -12,6 +12,7 @@ def main() -> int:
         sys.exit("this build of the Python module does not contain the command: use the program `taut`")
     for stop in (signal.SIGINT, signal.SIGTERM):  # the command handles them
         signal.signal(stop, signal.SIG_DFL)
+    os.environ.setdefault("TAUT_PYTHON", sys.executable)  # `taut plot` draws with this Python's matplotlib
     sys.stdout.flush()
     status = _core.main(_core.__file__, sys.argv[1:])
     os._exit(status)  # the command has finished its output

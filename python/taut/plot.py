@@ -5,13 +5,13 @@
 
 or in a terminal:
 
-    python3 -m taut.plot runs/drop --with lab.csv --channels 'cable/*/tension_n' --out drop.pdf
+    taut plot runs/drop --with lab.csv --channels 'cable/*/tension_n' --out drop.pdf
 
+The command `taut plot` contains the text of this file, which therefore imports nothing of taut until it reads a trace.
 Matplotlib draws and writes PDF, SVG and PNG. It embeds fonts, and most users of Python already have it; a separate PDF
 writer would have to subset fonts. Matplotlib is optional: `pip install matplotlib`.
 """
 
-import argparse
 import fnmatch
 import json
 import math
@@ -24,7 +24,8 @@ MM_PER_INCH = 25.4
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#f0e442")
 STYLES = ("-", "--", ":", "-.")   # of runs
 PHASE = "#e9edf1"                 # background of every other phase
-MOST_MULTIPLES = 24
+MOST_CHANNELS = 24
+NO_MATPLOTLIB = 4   # exit status of `main`
 
 
 def _read(run):
@@ -47,10 +48,13 @@ def phases_of(run):
     if not isinstance(run, (str, os.PathLike)):
         return []
     path = pathlib.Path(run)
-    summary = (path if path.is_dir() else path.parent) / "summary.json"
-    if not summary.exists():
+    # A live run writes trace_2.h5 and summary_2.json after a reset.
+    name = "summary.json" if path.is_dir() else path.stem.split(".")[0].replace("trace", "summary") + ".json"
+    summary = (path if path.is_dir() else path.parent) / name
+    if not summary.name.startswith("summary") or not summary.exists():
         return []
-    return [(p["name"], p["from_s"], p["to_s"]) for p in json.loads(summary.read_text(encoding="utf-8"))["phases"]]
+    phases = json.loads(summary.read_text(encoding="utf-8")).get("phases", [])
+    return [(p["name"], p["from_s"], p["to_s"]) for p in phases]
 
 
 def _matching(trace, patterns):
@@ -88,6 +92,13 @@ def _shade(axes, phases, named):
                           textcoords="offset points", ha="center", va="bottom", fontsize="small", annotation_clip=True)
 
 
+def _legend(axes, height_mm, entries):
+    """Adds a legend below axes of this height, where it hides no data."""
+    ticks_and_label_mm = 10
+    axes.legend(loc="upper left", bbox_to_anchor=(0, -ticks_and_label_mm / height_mm), frameon=False, fontsize="small",
+                ncols=min(4, entries), borderaxespad=0, handlelength=1.5, columnspacing=1)
+
+
 def _window(trace, name, from_s, to_s):
     """Returns times and values of a channel within a time span."""
     rows = [(t, x) for t, x in zip(trace.time_s, trace[name])
@@ -104,28 +115,23 @@ def _draw(axes, name, color, traces, measured, labels, label, span):
         axes.plot(*_window(measured, name, *span), "o", color=color, markersize=2, alpha=0.6, markeredgewidth=0)
 
 
-def plot(runs, out, channels, measured=None, *, width_mm=88, height_mm=None, layout="one", labels=None, phases=None,
+def plot(runs, out, channels, measured=None, *, width_mm=88, height_mm=None, layout=None, labels=None, phases=None,
          from_s=None, to_s=None, dpi=300):
     """Draws channels of runs over time and writes the figure.
 
     `runs`: a path, a folder of a run, a `taut.Run` or a `taut.Trace`, or a list of at most four. `out`: file with the
     extension .pdf, .svg or .png. `channels`: patterns such as "cable/*/tension_n". `measured`: trace or path, drawn as
     dots over the lines. `layout`: "one" axis for all channels, which must have one unit, or "many": one small plot per
-    channel. `phases`: list of (name, from_s, to_s) to shade; default: the phases in the first run's folder. Returns the
-    matplotlib figure. Raises ValueError for channels that do not exist and ImportError without matplotlib."""
-    try:
-        import matplotlib
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ImportError("plots need matplotlib: pip install matplotlib, or apt install python3-matplotlib") from error
-
+    channel; default: "one" for at most eight channels with one unit. `phases`: list of (name, from_s, to_s) to shade;
+    default: the phases in the first run's folder. Returns the matplotlib figure. Raises ValueError for channels that do
+    not exist and ImportError without matplotlib."""
     runs = list(runs) if isinstance(runs, (list, tuple)) else [runs]
     suffix = pathlib.Path(out).suffix.lower()
     if suffix not in (".pdf", ".svg", ".png"):
         raise ValueError(f"unknown figure format \"{suffix}\" (expected .pdf, .svg or .png)")
     if not 1 <= len(runs) <= len(STYLES):
         raise ValueError(f"{len(runs)} runs (expected 1 to {len(STYLES)})")
-    if layout not in ("one", "many"):
+    if layout not in (None, "one", "many"):
         raise ValueError(f"unknown layout \"{layout}\" (expected one or many)")
     phases = phases_of(runs[0]) if phases is None else phases
     labels = labels or [_name(run, i) for i, run in enumerate(runs)]
@@ -135,9 +141,24 @@ def plot(runs, out, channels, measured=None, *, width_mm=88, height_mm=None, lay
     units = {name: traces[0].units[name] for name in names}
     if layout == "one" and len(set(units.values())) > 1:
         raise ValueError(f"one axis cannot show the units {', '.join(sorted(set(units.values())))}: use layout=\"many\"")
-    if layout == "many" and len(names) > MOST_MULTIPLES:
-        raise ValueError(f"{len(names)} channels (expected at most {MOST_MULTIPLES} small plots)")
+    if len(names) > MOST_CHANNELS:
+        raise ValueError(f"{len(names)} channels (expected at most {MOST_CHANNELS})")
+    if measured is not None and not any(name in measured for name in names):
+        raise ValueError("the measurement has none of the channels (its channels must have taut's names)")
+    return _write(out, suffix, traces, measured, units, layout, labels, phases, (from_s, to_s), width_mm, height_mm, dpi)
 
+
+def _write(out, suffix, traces, measured, units, layout, labels, phases, span, width_mm, height_mm, dpi):
+    """Draws a figure and writes it to `out`, a path or a stream of bytes. `units`: units of the channels to draw, by
+    name. Returns the figure."""
+    try:
+        import matplotlib
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise ImportError("plots need matplotlib: pip install matplotlib, or apt install python3-matplotlib") from error
+
+    names = list(units)
+    layout = layout or ("one" if len(names) <= len(COLORS) and len(set(units.values())) == 1 else "many")
     columns = 1 if layout == "one" else min(3, math.ceil(math.sqrt(len(names))))
     lines = 1 if layout == "one" else math.ceil(len(names) / columns)
     height_mm = height_mm or (0.65 * width_mm if layout == "one" else max(0.65 * width_mm, 32 * lines))
@@ -146,14 +167,16 @@ def plot(runs, out, channels, measured=None, *, width_mm=88, height_mm=None, lay
                                 "axes.spines.top": False, "axes.spines.right": False}):
         figure = Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), layout="constrained")
         grid = figure.subplots(lines, columns, sharex=True, squeeze=False)
-        span = (from_s, to_s)
         if layout == "one":
             axes = grid[0][0]
             for i, (name, label) in enumerate(zip(names, _short(names))):
                 _draw(axes, name, COLORS[i % len(COLORS)], traces, measured, labels, label if len(names) > 1 else "", span)
             axes.set(xlabel="time [s]", ylabel=_quantity(names[0], units[names[0]]))
-            if len(names) * len(runs) > 1:
-                axes.legend(loc="upper right", frameon=False, fontsize="small", ncols=1 + (len(names) * len(runs) > 6))
+            entries = len(names) * len(traces)
+            if measured is not None:
+                axes.plot([], [], "o", color="0.3", markersize=2, label="measured")
+            if entries > 1 or measured is not None:
+                _legend(axes, 0.7 * height_mm, entries + (measured is not None))
             _shade(axes, phases, True)
         else:
             flat = [axes for line in grid for axes in line]
@@ -167,36 +190,43 @@ def plot(runs, out, channels, measured=None, *, width_mm=88, height_mm=None, lay
             for axes in flat[max(0, len(names) - columns):len(names)]:
                 axes.set_xlabel("time [s]")
                 axes.tick_params(labelbottom=True)
-            if len(runs) > 1:
-                flat[0].legend(loc="upper right", frameon=False, fontsize="small")
+            lowest = flat[columns * (lines - 1)]
+            if measured is not None:
+                lowest.plot([], [], "o", color="0.3", markersize=2, label="measured")
+            if len(traces) > 1 or measured is not None:
+                _legend(lowest, 0.5 * height_mm / lines, len(traces) + (measured is not None))
         # Without a date, the same data give the same bytes.
-        figure.savefig(out, dpi=dpi, metadata={".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(suffix))
+        figure.savefig(out, format=suffix[1:], dpi=dpi, metadata={".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(suffix))
     return figure
 
 
-def main(words=None):
-    """Runs the command `python3 -m taut.plot`. Returns its exit status: 0 success, 1 not written, 3 bad input."""
-    parser = argparse.ArgumentParser(prog="python3 -m taut.plot", description="Draw channels of runs over time.")
-    parser.add_argument("runs", nargs="+", metavar="RUN", help="folder of a run, or trace; at most 4")
-    parser.add_argument("--with", dest="measured", metavar="TRACE", help="measurement, drawn as dots")
-    parser.add_argument("--channels", nargs="+", required=True, metavar="PATTERN", help="such as 'cable/*/tension_n'")
-    parser.add_argument("--out", required=True, metavar="FILE", help="figure: .pdf, .svg or .png")
-    parser.add_argument("--width_mm", type=float, default=88, help="width (default: 88, one column)")
-    parser.add_argument("--height_mm", type=float, help="height (default: by the layout)")
-    parser.add_argument("--layout", choices=("one", "many"), default="one", help="one axis, or one plot per channel")
-    parser.add_argument("--from_s", type=float, help="start [s]")
-    parser.add_argument("--to_s", type=float, help="end [s]")
-    args = parser.parse_args(words)
+class _SentTrace:
+    """The drawn channels of a trace, as `taut plot` sends them. null: no number."""
+
+    def __init__(self, sent):
+        self.time_s = sent["time_s"]
+        self._values = {name: [math.nan if x is None else x for x in row] for name, row in sent["values"].items()}
+
+    def __getitem__(self, name):
+        return self._values[name]
+
+    def __contains__(self, name):
+        return name in self._values
+
+
+def main():
+    """Draws the figure of `taut plot`, which has checked its arguments and read the traces: reads them as JSON from
+    standard input and writes the figure to standard output. Returns the exit status."""
+    asked = json.load(sys.stdin)
+    paths = asked["paths"]
+    labels = [_name(path, i) for i, path in enumerate(paths)]
+    measured = _SentTrace(asked["measured"]) if asked["measured"] else None
     try:
-        plot(args.runs, args.out, args.channels, args.measured, width_mm=args.width_mm, height_mm=args.height_mm,
-             layout=args.layout, from_s=args.from_s, to_s=args.to_s)
-    except (ValueError, ImportError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 3
-    except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    print(f"Figure: {args.out}")
+        _write(sys.stdout.buffer, asked["format"], [_SentTrace(sent) for sent in asked["runs"]], measured, dict(asked["units"]),
+               asked["layout"] or None, labels, phases_of(paths[0]), (asked["from_s"], asked["to_s"]),
+               asked["width_mm"], asked["height_mm"], asked["dpi"])
+    except ImportError:
+        return NO_MATPLOTLIB
     return 0
 
 

@@ -66,9 +66,9 @@ axes = figure.axes[0]
 assert axes.get_ylabel() == "tension [N]" and axes.get_xlabel() == "time [s]"
 lines = [line for line in axes.lines if line.get_linestyle() == "-"]
 dots = [line for line in axes.lines if line.get_marker() == "o"]
-assert len(lines) == 6 and len(dots) == 6
+assert len(lines) == 6 and len(dots) == 7           # one entry of the legend
 assert len({line.get_color() for line in lines}) == 6
-assert [text.get_text() for text in axes.get_legend().get_texts()] == [f"c{i}" for i in range(6)]
+assert [text.get_text() for text in axes.get_legend().get_texts()] == [f"c{i}" for i in range(6)] + ["measured"]
 assert len(axes.patches) == 2                       # every other phase is shaded
 assert {"before", "push", "after"} <= {text.get_text() for text in axes.texts}
 
@@ -89,8 +89,15 @@ assert len(shown) == 7
 assert shown[6].get_ylabel() == "position z [m]"
 assert abs(min(shown[0].lines[0].get_xdata()) - 1) < 1e-9 and abs(max(shown[0].lines[0].get_xdata()) - 2) < 1e-9
 
+# By default, few channels with one unit share an axis.
+assert len(plots.plot(RUN, folder / "n.png", "cable/*", dpi=50).axes) == 1
+assert len(plots.plot(RUN, folder / "n.png", "*", dpi=50).axes) > 1
+assert len(plots.plot(FakeTrace([f"cable/c{i}/tension_n" for i in range(9)]), folder / "n.png", "*", dpi=50).axes) == 9
+
 raises("no channel matches", RUN, pdf, "cable/*/tension")
-raises("one axis cannot show the units N, m", RUN, pdf, "*")
+raises("one axis cannot show the units N, m", RUN, pdf, "*", layout="one")
+raises("none of the channels", RUN, pdf, "cable/*", FakeTrace(["c0"]))
+raises("25 channels", FakeTrace([f"cable/c{i}/tension_n" for i in range(25)]), pdf, "*")
 raises("unknown figure format \".eps\"", RUN, folder / "a.eps", "*")
 raises("5 runs", [RUN] * 5, pdf, "cable/*")
 raises("unknown layout", RUN, pdf, "cable/*", layout="two")
@@ -99,4 +106,6 @@ raises("unknown layout", RUN, pdf, "cable/*", layout="two")
 (folder / "summary.json").write_text(json.dumps({"phases": [{"name": "p", "from_s": 0, "to_s": 1}]}))
 assert plots.phases_of(folder) == plots.phases_of(folder / "trace.h5") == [("p", 0, 1)]
 assert plots.phases_of(RUN) == []
-assert plots.main([str(folder / "none"), "--channels", "*", "--out", str(folder / "a.eps")]) == 3
+assert plots.phases_of(folder / "trace_2.h5") == plots.phases_of(folder / "lab.csv") == []
+(folder / "summary_2.json").write_text(json.dumps({"phases": [{"name": "q", "from_s": 1, "to_s": 2}]}))
+assert plots.phases_of(folder / "trace_2.h5") == [("q", 1, 2)]

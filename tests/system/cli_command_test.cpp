@@ -22,6 +22,7 @@ class CliCommand : public test::CommandTest {
             {"run"},
             {"report"},
             {"compare"},
+            {"plot"},
             {"fit"},
             {"analyze"},
             {"learn"},
@@ -100,7 +101,6 @@ TEST_F(CliCommand, EveryCommandHasAnExample) {
 TEST_F(CliCommand, WordsOfOtherProgramsNameTheCommand) {
   for (const auto& [word, command] :
        std::vector<std::pair<std::string, std::string>>{{"init", "new"},
-                                                        {"plot", "report"},
                                                         {"simulate", "run"},
                                                         {"validate", "check"},
                                                         {"train", "learn"},

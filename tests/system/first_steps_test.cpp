@@ -47,8 +47,8 @@ TEST_F(FirstSteps, ARunEndsInTheSameState) {
 }
 
 TEST_F(FirstSteps, TheOtherCommandsNameTheWayToBuildThem) {
-  for (const char* const name :
-       {"analyze", "compare", "export", "fit", "import", "learn", "robot", "size", "trace"}) {
+  for (const char* const name : {"analyze", "compare", "export", "fit", "import", "learn", "plot",
+                                 "robot", "size", "trace"}) {
     const test::CommandResult result = Taut({name, "model.yaml", "--tables"});
     EXPECT_EQ(result.status, 1) << name;
     EXPECT_NE(result.errors.find("error: `taut " + std::string(name) + "` is not built yet"),

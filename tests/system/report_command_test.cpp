@@ -43,7 +43,10 @@ TEST_F(ReportCommand, AReportComparesTwoTraces) {
   const CommandResult result =
       Run({"report", "b/trace.h5", "--compare", "a/trace.h5", "--out", "both.html"});
   EXPECT_EQ(result.status, 0) << result.errors;
-  EXPECT_EQ(result.output, "Report: both.html\nnext: xdg-open both.html\n");
+  EXPECT_EQ(result.output,
+            "Report: both.html\n"
+            "figure: taut plot b/trace.h5 a/trace.h5 --out both.pdf\n"
+            "next: xdg-open both.html\n");
   const Json report = DataOf(Read(Path("both.html")));
   EXPECT_EQ(report["scene"]["compared"][0]["name"], "hang (a/trace.h5)");
   EXPECT_EQ(report["scene"]["run_name"], "hang (b/trace.h5)");
@@ -61,7 +64,10 @@ TEST_F(ReportCommand, ARunMayBeGivenAsItsFolder) {
   std::filesystem::remove(Path("b/trace.h5"));
   CommandResult result = Run({"report", "a/", "--compare", "b"});
   EXPECT_EQ(result.status, 0) << result.errors;
-  EXPECT_EQ(result.output, "Report: a/report.html\nnext: xdg-open a/report.html\n");
+  EXPECT_EQ(result.output,
+            "Report: a/report.html\n"
+            "figure: taut plot a/trace.h5 b/trace.csv --out a/report.pdf\n"
+            "next: xdg-open a/report.html\n");
   const Json report = DataOf(Read(Path("a/report.html")));
   EXPECT_EQ(report["scene"]["run_name"], "hang (a/trace.h5)");
   EXPECT_EQ(report["scene"]["compared"][0]["name"],
