@@ -49,9 +49,10 @@ TEST_F(GroundText, AFormulaIsRefusedWhereAllCornersWouldTakeTooLong) {
   const double ones = static_cast<double>(longer.size() - 3) / 4;
   EXPECT_EQ(robot.def.height_fields[0].height_m[0], ones - 49.5);
   const std::string said = Said(field(10'000));
-  EXPECT_NE(said.find(" operations and operands for each of 1e+06 corners, more than 400 000 000 in "
-                      "all (use a shorter formula"),
-            std::string::npos)
+  EXPECT_NE(
+      said.find(" operations and operands for each of 1e+06 corners, more than 400 000 000 in "
+                "all (use a shorter formula"),
+      std::string::npos)
       << said;
 }
 
