@@ -9,6 +9,7 @@
 #include "robot_console.h"
 #include "robot_recording.h"
 #include "taut/run_folder.h"
+#include "taut/time_limits.h"
 #include "taut/version.h"
 
 namespace taut::cli {
@@ -186,7 +187,7 @@ int Log(const HoldArguments& args) {
 void AddDuration(CLI::App& command, HoldArguments& args) {
   command.add_option("--duration_s", args.duration_s, "Duration [s] (default: until Ctrl-C)")
       ->option_text("S")
-      ->check(NumberWithin(0.0, 1e9));
+      ->check(NumberWithin(0.0, kLongestTime_s));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "taut/run.h"
 #include "taut/run_folder.h"
 #include "taut/summary.h"
+#include "taut/time_limits.h"
 #include "view_server.h"
 
 namespace taut::cli {
@@ -191,7 +192,7 @@ void AddRobotRun(CLI::App& robot, int& exit_code) {
   AddDriving(*run, *args);
   run->add_option("--duration_s", args->duration_s, "Duration [s] (overrides the file)")
       ->option_text("S")
-      ->check(NumberWithin(0.0, 1e9));
+      ->check(NumberWithin(0.0, kLongestTime_s));
   run->add_option("--out", args->out, "Output folder (default: runs/<experiment>_on_robot)")
       ->option_text("FOLDER");
   auto* view = run->add_flag("--view", args->view, "Browser page to watch and stop the run");

@@ -23,6 +23,7 @@
 #include "taut/spec.h"
 #include "taut/start.h"
 #include "taut/summary.h"
+#include "taut/time_limits.h"
 #include "taut/trace.h"
 #include "taut/version.h"
 #include "taut/world_batch.h"
@@ -216,10 +217,10 @@ void AddRun(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   run->add_option("--step_s", args->step_s, "Time step [s] (overrides the file)")
       ->option_text("S")
-      ->check(NumberWithin(1e-9, 1.0));
+      ->check(NumberWithin(kShortestStep_s, kLongestStep_s));
   run->add_option("--duration_s", args->duration_s, "Duration [s] (overrides the file)")
       ->option_text("S")
-      ->check(NumberWithin(0.0, 1e9));
+      ->check(NumberWithin(0.0, kLongestTime_s));
   run->add_option("--seed", args->seed, "Random seed (overrides the file)")
       ->option_text("N")
       ->check(WholeNumberWithin(0, std::numeric_limits<std::uint64_t>::max()))

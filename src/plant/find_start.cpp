@@ -1,5 +1,7 @@
 #include "plant/find_start.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -15,6 +17,7 @@
 #include "sim/batch/ground_height.h"
 #include "taut/shape_kinds.h"
 #include "taut/start.h"
+#include "taut/time_limits.h"
 
 namespace taut::plant {
 namespace {
@@ -214,8 +217,26 @@ void ApplyScales(const std::vector<ScaleSpec>& scales, WorldBatch& batch, int wo
   }
 }
 
+bool CheckTimes(const ExperimentSpec& experiment, Diagnostics& out) {
+  const double step_s = experiment.step_s, duration_s = experiment.duration_s;
+  const bool good_step = step_s >= kShortestStep_s && step_s <= kLongestStep_s;
+  const bool good_duration = duration_s >= 0 && duration_s <= kLongestTime_s;
+  if (!good_step) {
+    out.Error("experiment.step_out_of_range", {},
+              fmt::format("step_s must be within {:g}..{:g} s, got {}", kShortestStep_s,
+                          kLongestStep_s, step_s));
+  }
+  if (!good_duration) {
+    out.Error(
+        "experiment.duration_out_of_range", {},
+        fmt::format("duration_s must be within 0..{:g} s, got {}", kLongestTime_s, duration_s));
+  }
+  return good_step && good_duration;
+}
+
 bool PrepareStart(const ExperimentSpec& experiment, WorldBatch& batch, Diagnostics& out,
                   const std::function<bool()>& go_on, std::optional<SettledStart>* settled) {
+  if (!CheckTimes(experiment, out)) return false;
   ApplyScales(experiment.scales, batch, kTheWorld);
   const RobotSpec& robot = experiment.robot;
   const StartNoise& noise = experiment.start_noise;

@@ -19,6 +19,9 @@ inline constexpr int kTheWorld = 0;
 /// Multiplies parameters of a world by scale factors.
 void ApplyScales(const std::vector<ScaleSpec>& scales, WorldBatch& batch, int world);
 
+/// Checks `step_s` and `duration_s` of an experiment that a program may have changed.
+bool CheckTimes(const ExperimentSpec& experiment, Diagnostics& out);
+
 /// Sets a new batch of one world to the start of the experiment: scale factors, equilibrium, noise.
 /// Returns false and reports an error if there is no such state, or if bodies overlap deeply at the
 /// start or before settling. Also returns false if `go_on` returns false. `settled`: receives the

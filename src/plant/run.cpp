@@ -126,7 +126,7 @@ class Runner {
 
 std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const RunOptions& options,
                                         Diagnostics& out) {
-  if (!CheckRecord(experiment, out)) return std::nullopt;
+  if (!CheckRecord(experiment, out) || !plant::CheckTimes(experiment, out)) return std::nullopt;
   if (options.plant != nullptr) {
     if (options.begin && !options.begin(out)) return std::nullopt;
     return Runner(experiment, options, *options.plant).Run(out);

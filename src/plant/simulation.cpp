@@ -1,10 +1,13 @@
 #include "taut/simulation.h"
 
+#include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 #include "plant/simulation_impl.h"
 #include "taut/minimal_experiment.h"
 #include "taut/run.h"
+#include "taut/time_limits.h"
 
 namespace taut {
 
@@ -60,6 +63,11 @@ void Simulation::Step() {
 }
 
 void Simulation::RunUntil(double time_s, const std::function<bool()>& keep_going) {
+  if (!(time_s <= kLongestTime_s)) [[unlikely]] {
+    std::fprintf(stderr, "taut: RunUntil: the time is %g s: valid are times up to %g s\n", time_s,
+                 kLongestTime_s);
+    std::abort();
+  }
   auto work = [&](int, std::size_t g) {
     plant::Loop& loop = impl_->groups[g]->loop;
     for (;;) {

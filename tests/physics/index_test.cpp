@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -44,6 +46,18 @@ TEST(IndexDeathTest, TargetsForAllCablesOfAllWorldsAreAsMany) {
                "taut: Step: needs one target for each cable of each world: expected 2, "
                "got 1");
   EXPECT_DEATH(batch.Step(0.001, 1, targets), "expected 2, got 3");
+}
+
+TEST(IndexDeathTest, StepsArePositiveAndASecondAtMost) {
+  WorldBatch batch = TwoWorlds();
+  const std::vector<std::uint8_t> mask(2, 1);
+  for (const double step_s : {0.0, -1e-3, 1.001, 1e308, double{NAN}, HUGE_VAL}) {
+    EXPECT_DEATH(batch.Step(step_s), "taut: Step: the step is .* s: valid are steps above 0");
+    EXPECT_DEATH(batch.StepMasked(step_s, mask), "taut: StepMasked: the step is .* s");
+  }
+  EXPECT_DEATH(batch.Step(1e-3, -1), "taut: Step: there are -1 steps: valid are 0 or more");
+  batch.Step(1.0, 0);
+  batch.Step(1e-9);
 }
 
 TEST(IndexDeathTest, EveryFunctionLooksAtEveryIndex) {

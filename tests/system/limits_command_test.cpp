@@ -91,6 +91,18 @@ TEST_F(Limits, NumbersOutOfRangeAreBadUsage) {
   }
 }
 
+TEST_F(Limits, DurationsOfFilesAre1e9SecondsAtMost) {
+  for (const std::string text : {"1e300", "2e9", "-1"}) {
+    Write("long.yaml", "taut: 1\nkind: experiment\nname: long\nbase: " + kHangToLimits +
+                           "\nduration_s: " + text + "\n");
+    const CommandResult refused = Taut({"check", "long.yaml"});
+    EXPECT_EQ(refused.status, 3) << refused.output;
+    EXPECT_NE(refused.errors.find("long.yaml:5:13: error: duration_s must be within 0..1e9, got "),
+              std::string::npos)
+        << refused.errors;
+  }
+}
+
 TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
   for (const char* const command : {"run", "check"}) {
     ExpectRefused({command, "absent.yaml"}, 3,

@@ -7,6 +7,7 @@
 #include "description/experiment/load_keys.h"
 #include "description/experiment/sensor_keys.h"
 #include "description/model/model_keys.h"
+#include "taut/time_limits.h"
 
 namespace taut::description {
 
@@ -320,10 +321,12 @@ void Keys(Io& io, Experiment& e) {
     io("motion", e.motions,
        "Kinematic bodies with prescribed motion: shakers, turntables, platforms. Default: none.");
   }
-  io("step_s", e.step_s, Bound{.least = 1e-9, .most = 1.0, .least_text = "1e-9"},
+  io("step_s", e.step_s,
+     Bound{.least = kShortestStep_s, .most = kLongestStep_s, .least_text = "1e-9"},
      "Longest step of the integrator. Steps also end at ticks of controllers and at corner points "
      "of events.");
-  io("duration_s", e.duration_s, kNeeded, Bound::kNonNegative,
+  io("duration_s", e.duration_s, kNeeded,
+     Bound{.least = 0, .most = kLongestTime_s, .most_text = "1e9"},
      "Simulated time; with 0 the trace contains only the start. Required unless `base` has it.",
      Example{"60"});
   io("start", e.start, kStarts,

@@ -224,6 +224,7 @@ sim::StepSettings WorldBatch::Impl::SettingsOf(double step_s) const noexcept {
 }
 
 void WorldBatch::Impl::Step(double step_s, int count, const double* targets_m) noexcept {
+  sim::CheckStep("Step", step_s, count);
   const sim::StepSettings settings = SettingsOf(step_s);
   auto work = [&](int thread, std::size_t g) {
     if (targets_m != nullptr) SetTargets(static_cast<int>(g), targets_m);

@@ -1,4 +1,4 @@
-// Messages about wrong indices and counts from callers of a WorldBatch.
+// Messages about wrong indices, counts and steps from callers of a WorldBatch.
 #include "sim/batch/check_index.h"
 
 #include <cstdio>
@@ -26,6 +26,16 @@ void WrongCount(const char* function, const char* what, std::size_t given,
                 std::size_t needed) noexcept {
   std::fprintf(stderr, "taut: %s: needs one %s: expected %zu, got %zu\n", function, what, needed,
                given);
+  std::abort();
+}
+
+void WrongStep(const char* function, double step_s, int count) noexcept {
+  if (count < 0) {
+    std::fprintf(stderr, "taut: %s: there are %d steps: valid are 0 or more\n", function, count);
+  } else {
+    std::fprintf(stderr, "taut: %s: the step is %g s: valid are steps above 0, up to %g s\n",
+                 function, step_s, kLongestStep_s);
+  }
   std::abort();
 }
 

@@ -1,8 +1,10 @@
-/// Bounds checks of indices from callers. A wrong index is a programming error and would overwrite
-/// other data. Therefore every build reports it and aborts.
+/// Bounds checks of indices, counts and steps from callers. A wrong index is a programming error
+/// and would overwrite other data. Therefore every build reports it and aborts.
 #pragma once
 
 #include <cstddef>
+
+#include "taut/time_limits.h"
 
 namespace taut::sim {
 
@@ -26,6 +28,15 @@ inline void CheckCount(const char* function, const char* what, std::size_t given
                        std::size_t needed) noexcept {
   if (given != needed) [[unlikely]] {
     WrongCount(function, what, given, needed);
+  }
+}
+
+[[noreturn]] void WrongStep(const char* function, double step_s, int count) noexcept;
+
+/// Checks the length and the number of steps.
+inline void CheckStep(const char* function, double step_s, int count) noexcept {
+  if (!(step_s > 0 && step_s <= kLongestStep_s && count >= 0)) [[unlikely]] {
+    WrongStep(function, step_s, count);
   }
 }
 

@@ -89,6 +89,7 @@ void WorldBatch::Impl::StepMasked(double step_s, const std::uint8_t* mask) {
 }
 
 void WorldBatch::StepMasked(double step_s, std::span<const std::uint8_t> mask) {
+  sim::CheckStep(__func__, step_s, 1);
   sim::CheckCount(__func__, "word for each world", mask.size(),
                   static_cast<std::size_t>(impl_->options.worlds));
   impl_->StepMasked(step_s, mask.data());

@@ -35,7 +35,7 @@ TEST_F(ExperimentErrors, MissingKeysAreNamed) {
 
 TEST_F(ExperimentErrors, TimesHaveLimits) {
   Expect("duration_s: 10", "duration_s: -1",
-         "8:13: error: duration_s must not be negative, got -1");
+         "8:13: error: duration_s must be within 0..1e9, got -1");
   Expect("duration_s: 10", "duration_s: 10\nstep_s: 0",
          "9:9: error: step_s must be positive, got 0");
   Expect("duration_s: 10", "duration_s: 10\nstep_s: 2",

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "taut/find.h"
 #include "taut/rollout.h"
@@ -30,6 +31,29 @@ TEST(Simulation, HasTheBitsOfTheRun) {
     const auto simulation = Create(experiment);
     simulation->RunUntil(0.8);
     EXPECT_EQ(simulation->Hash(), HashOfRun(experiment)) << name;
+  }
+}
+
+TEST(Simulation, StepsAndTimesOfAProgramAreChecked) {
+  const ExperimentSpec good = Load("push_20n", 0.1);
+  for (const auto& [step_s, duration_s, what] :
+       {std::tuple(1e308, 0.1, "step_s must be within 1e-09..1 s, got 1e+308"),
+        std::tuple(double{NAN}, 0.1, "step_s must be within 1e-09..1 s, got nan"),
+        std::tuple(0.0, 0.1, "step_s must be within 1e-09..1 s, got 0"),
+        std::tuple(1e-3, 1e300, "duration_s must be within 0..1e+09 s, got 1e+300"),
+        std::tuple(1e-3, double{NAN}, "duration_s must be within 0..1e+09 s, got nan")}) {
+    ExperimentSpec wrong = good;
+    wrong.step_s = step_s;
+    wrong.duration_s = duration_s;
+    Diagnostics of_run, of_simulation;
+    EXPECT_FALSE(RunExperiment(wrong, {}, of_run));
+    EXPECT_FALSE(Simulation::Create(wrong, {}, of_simulation));
+    EXPECT_NE(of_run.Format().find(what), std::string::npos) << of_run.Format();
+    EXPECT_NE(of_simulation.Format().find(what), std::string::npos) << of_simulation.Format();
+  }
+  const auto simulation = Create(good);
+  for (const double time_s : {0x1p63, HUGE_VAL, double{NAN}}) {
+    EXPECT_DEATH(simulation->RunUntil(time_s), "taut: RunUntil: the time is .* s: valid are times");
   }
 }
 
