@@ -44,7 +44,7 @@ std::pair<Parameter, int> ParameterOf(const Worlds& worlds, const std::string& n
 }
 
 void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
-  Positive(step_s, "step_s");
+  StepLength(step_s);
   if (count < 0) throw py::value_error(fmt::format("count: {}; expected 0 or more", count));
   std::span<const double> rows;
   Array a;

@@ -26,7 +26,7 @@ std::vector<int> CablesOf(const RobotSpec& robot, const py::object& names) {
   }
   for (const py::handle& name : names) {
     Diagnostics said;
-    const auto cable = FindCable(robot.def, name.cast<std::string>(), &said);
+    const auto cable = FindCable(robot.def, Text(name, "cables"), &said);
     if (!cable) RefuseName(said);
     cables.push_back(*cable);
   }
@@ -62,7 +62,7 @@ std::shared_ptr<LibrarySpec> Impedance(const RobotSpec& robot, const py::object&
                                        const py::object& position_gain_n_per_m,
                                        const py::object& velocity_gain_n_s_per_m,
                                        const py::object& velocity_offset_m_per_s, double period_s,
-                                       bool differenced_rate) {
+                                       const py::object& differenced_rate) {
   const std::vector<int> cables = CablesOf(robot, names);
   const std::size_t n = cables.size();
   const auto tension = PerCable(tension_offset_n, n, "tension_offset_n", false);
@@ -75,7 +75,7 @@ std::shared_ptr<LibrarySpec> Impedance(const RobotSpec& robot, const py::object&
   spec->name = "impedance";
   spec->clock.period_s = PeriodOf(period_s);
   spec->impedance.emplace();
-  spec->impedance->differenced_rate = differenced_rate;
+  spec->impedance->differenced_rate = Flag(differenced_rate, "differenced_rate");
   for (std::size_t i = 0; i < n; ++i) {
     spec->impedance->cables.push_back(
         {cables[i], tension[i], length[i], position[i], velocity[i], offset[i]});
@@ -90,7 +90,7 @@ std::shared_ptr<LibrarySpec> Position(const RobotSpec& robot, const py::dict& pr
   spec->name = "position";
   spec->clock.period_s = PeriodOf(period_s);
   for (const auto& [name, points] : programs) {
-    const std::string cable = py::str(name);
+    const std::string cable = Text(name, "programs");
     PositionProgram program;
     program.cable = CablesOf(robot, py::make_tuple(cable))[0];
     program.rest_length_m = points.cast<std::vector<std::pair<double, double>>>();

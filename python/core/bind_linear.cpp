@@ -16,15 +16,15 @@ namespace {
 
 using System = std::shared_ptr<StateSpace>;
 
-System Find(const ExperimentSpec& experiment, bool differences) {
+System Find(const ExperimentSpec& experiment, const py::object& differences) {
+  LinearOptions options;
+  options.differences = Flag(differences, "differences");
   Diagnostics said;
   CheckStart(experiment.robot, StartKind::kSettled, said);
   Tell(said);
   auto system = std::make_shared<StateSpace>();
   Diagnostics later;
   Interruptible([&](const std::atomic<bool>& stop) {
-    LinearOptions options;
-    options.differences = differences;
     options.go_on = [&] { return !stop; };
     *system = FindStateSpace(experiment, options, later);
   });
@@ -132,7 +132,7 @@ void AddLinear(py::module_& module) {
   module.def("linear_system", &Find, py::arg("experiment"), py::arg("differences") = false, words);
   module.def(
       "linear_system",
-      [](const RobotSpec& robot, bool differences) {
+      [](const RobotSpec& robot, const py::object& differences) {
         ExperimentSpec alone = MinimalExperiment(robot);
         // A robot without supports is linearized without weight, as in statics.
         if (!IsHeld(robot.def)) alone.robot.def.gravity_m_per_s2 = {};

@@ -60,6 +60,7 @@ py::dict Rollout(const ExperimentSpec& experiment, const std::string& objective_
                  const std::vector<GivenVariant>& given, int threads,
                  const std::optional<std::string>& simd, const py::object& progress) {
   Threads(threads);
+  CallableOrNone(progress, "progress");
   RolloutOptions options;
   options.threads = threads;
   options.simd = SimdOf(simd);

@@ -5,6 +5,7 @@
 
 #include "shared_simulation.h"
 #include "taut/minimal_experiment.h"
+#include "taut/time_limits.h"
 
 namespace taut::python {
 namespace {
@@ -13,8 +14,9 @@ using S = SharedSimulation;
 
 /// Runs to a time in pieces that take a fraction of a second.
 void RunUntil(S& shared, double time_s) {
-  if (!std::isfinite(time_s)) {
-    throw py::value_error(fmt::format("time_s: {}; expected a finite number", time_s));
+  if (!std::isfinite(time_s) || time_s > kLongestTime_s) {
+    throw py::value_error(
+        fmt::format("time_s: {}; expected a finite number up to {:g} [s]", time_s, kLongestTime_s));
   }
   double piece_s = 16 * shared.peek().experiment().step_s;
   shared.Run([&](Simulation& s) {

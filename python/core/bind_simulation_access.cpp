@@ -186,11 +186,7 @@ void AddCommands(SimulationType& type) {
           for (const auto& [field, at] : fields) {
             if (name != field) continue;
             known = true;
-            if (PyNumber_Check(value.ptr()) == 0) {
-              throw py::type_error(name + ": " + py::repr(value).cast<std::string>() +
-                                   "; expected a number");
-            }
-            const double number = value.cast<double>();
+            const double number = Number(value, name);
             const bool offset = at == &ImpedanceGains::velocity_offset_m_per_s;
             if (!std::isfinite(number) || (number < 0 && !offset)) {
               throw py::value_error(

@@ -6,6 +6,7 @@
 
 #include "python_control.h"
 #include "taut/files.h"
+#include "taut/time_limits.h"
 #include "text.h"
 
 namespace taut::python {
@@ -79,7 +80,14 @@ void AddDescriptions(py::module_& module) {
       .def_readonly("step_s", &Experiment::step_s, "Time step [s].")
       .def_property(
           "duration_s", [](const Experiment& e) { return e.duration_s; },
-          [](Experiment& e, double given) { e.duration_s = Positive(given, "duration_s"); },
+          [](Experiment& e, double given) {
+            if (!(given > 0 && given <= kLongestTime_s)) {
+              throw py::value_error(
+                  fmt::format("duration_s: {}; expected a positive number up to {:g} [s]", given,
+                              kLongestTime_s));
+            }
+            e.duration_s = given;
+          },
           "Simulated time of `taut.run` [s].")
       .def_property(
           "seed", [](const Experiment& e) { return e.seed; },

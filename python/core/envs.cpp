@@ -43,10 +43,10 @@ std::span<const T> ConstSpan(const Rows<T>& a) {
 class Environments : public OwnedWorlds<Env> {
  public:
   Environments(const ExperimentSpec& experiment, int worlds, int threads,
-               const std::optional<std::string>& simd, const std::string& autoreset, bool randomise,
-               const py::object& seed, int own_observations, const py::object& observe,
-               const py::object& judge)
-      : observe_(observe), judge_(judge) {
+               const std::optional<std::string>& simd, const std::string& autoreset,
+               const py::object& randomise, const py::object& seed, int own_observations,
+               const py::object& observe, const py::object& judge)
+      : observe_(CallableOrNone(observe, "observe")), judge_(CallableOrNone(judge, "judge")) {
     CheckWorlds(worlds);
     if (own_observations < 0)
       throw py::value_error(
@@ -55,7 +55,7 @@ class Environments : public OwnedWorlds<Env> {
     options.worlds = worlds;
     options.threads = Threads(threads);
     options.simd = SimdOf(simd);
-    options.randomise = randomise;
+    options.randomise = Flag(randomise, "randomise");
     if (!seed.is_none()) options.seed = Seed(seed);
     options.own_observations = own_observations;
     bool known = false;
@@ -239,8 +239,8 @@ void AddEnvironments(py::module_& module) {
   py::class_<E, std::shared_ptr<E>> type(module, "Environments",
                                          "Array interface beneath the classes of taut.gym.");
   type.def(py::init<const ExperimentSpec&, int, int, const std::optional<std::string>&,
-                    const std::string&, bool, const py::object&, int, const py::object&,
-                    const py::object&>(),
+                    const std::string&, const py::object&, const py::object&, int,
+                    const py::object&, const py::object&>(),
            py::arg("experiment"), py::arg("worlds") = 1, py::arg("threads") = 1,
            py::arg("simd") = py::none(), py::arg("autoreset") = "next_step",
            py::arg("randomise") = true, py::arg("seed") = py::none(),

@@ -104,16 +104,18 @@ std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
 }
 
 std::shared_ptr<Fitted> Fit(const std::string& path, const std::optional<std::string>& folder,
-                            int threads, const std::vector<std::string>& profiles, bool design,
-                            const py::object& progress, const py::kwargs& set) {
+                            int threads, const std::vector<std::string>& profiles,
+                            const py::object& design, const py::object& progress,
+                            const py::kwargs& set) {
   Threads(threads);
+  CallableOrNone(progress, "progress");
   const Overrides overrides = OverridesOf(set);
   std::mutex mutex;
   IdentifyProgress now;
   std::int64_t told = -1;
   Asked asked{path, folder, threads, {}};
   asked.how.profiles = profiles;
-  asked.how.design = design;
+  asked.how.design = Flag(design, "design");
   asked.how.progress = [&](const IdentifyProgress& p) {
     const std::lock_guard lock(mutex);
     now = p;

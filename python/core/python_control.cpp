@@ -168,13 +168,12 @@ class PythonController final : public Controller {
     if (!HasMemory()) return {};
     const py::object saved = CallPython(of_->attr("save"), world);
     if (!py::isinstance<py::bytes>(saved)) {
-      throw py::type_error(name + ".save: " + py::repr(saved).cast<std::string>() +
-                           "; expected bytes");
+      Unexpected(saved, name + ".save", "bytes");
     }
     return saved.cast<py::bytes>();
   }
   bool IsStateless() const {
-    return py::hasattr(*of_, "stateless") && py::bool_(of_->attr("stateless"));
+    return py::hasattr(*of_, "stateless") && Flag(py::object(of_->attr("stateless")), "stateless");
   }
 
   std::shared_ptr<py::object> of_;
@@ -184,17 +183,18 @@ class PythonController final : public Controller {
   std::size_t cables_;
 };
 
+/// Returns whether an object has a callable attribute of this name.
+bool HasMethod(const py::object& of, const char* name) {
+  return py::hasattr(of, name) && PyCallable_Check(of.attr(name).ptr()) != 0;
+}
+
 /// Returns an attribute as a number, or `otherwise` if it is absent. Raises TypeError if it is not
 /// a number, ValueError if it is not finite or too small.
 double NumberOf(const py::object& of, const char* name, const std::string& where, double otherwise,
                 bool may_be_zero) {
   if (!py::hasattr(of, name)) return otherwise;
-  const py::object given = of.attr(name);
-  if (PyNumber_Check(given.ptr()) == 0) {
-    throw py::type_error(where + "." + name + ": " + py::repr(given).cast<std::string>() +
-                         "; expected a number [s]");
-  }
-  const double value = given.cast<double>(), least = may_be_zero ? 0 : kLeastPeriodS;
+  const double value = Number(py::object(of.attr(name)), where + "." + name, "a number [s]");
+  const double least = may_be_zero ? 0 : kLeastPeriodS;
   if (!std::isfinite(value) || value < least) {
     throw py::value_error(
         fmt::format("{}.{}: {}; expected a number >= {} [s]", where, name, value, least));
@@ -262,7 +262,8 @@ class CallingPlant final : public PythonPlant {
       read("tension_n", Row(3), true);
       std::copy_n(Row(3), cables_, Row(4));
       read("elastic_n", Row(4), false);
-      running_ = !py::hasattr(*of_, "is_running") || py::bool_(CallPython(of_->attr("is_running")));
+      running_ = !py::hasattr(*of_, "is_running") ||
+                 Flag(CallPython(of_->attr("is_running")), "is_running()");
     });
   }
 
@@ -313,8 +314,7 @@ Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
   Extensions extensions;
   if (controllers.is_none()) return extensions;
   if (!py::isinstance<py::list>(controllers) && !py::isinstance<py::tuple>(controllers)) {
-    throw py::type_error("controllers: " + py::repr(controllers).cast<std::string>() +
-                         "; expected a list of controllers");
+    Unexpected(controllers, "controllers", "a list of controllers");
   }
   std::size_t number = 0;
   for (const py::handle& item : controllers) {
@@ -328,11 +328,15 @@ Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
       }
       continue;
     }
-    if (!py::hasattr(of, "act") || !py::hasattr(of, "period_s")) {
-      throw py::type_error(where + ": " + py::repr(of).cast<std::string>() +
-                           "; expected an object with period_s and act(seen, commands), or a "
-                           "controller of taut.control");
+    if (!HasMethod(of, "act") || !py::hasattr(of, "period_s")) {
+      Unexpected(of, where,
+                 "an object with period_s and act(seen, commands), or a controller of "
+                 "taut.control");
     }
+    for (const char* const name : {"save", "restore"}) {
+      if (py::hasattr(of, name)) CallableOrNone(py::object(of.attr(name)), where + "." + name);
+    }
+    if (py::hasattr(of, "stateless")) Flag(py::object(of.attr("stateless")), where + ".stateless");
     callbacks->is_used = true;
     const ClockSpec clock{NumberOf(of, "period_s", where, 0, false),
                           NumberOf(of, "phase_s", where, 0, true)};
@@ -347,10 +351,10 @@ Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
 std::unique_ptr<PythonPlant> PythonPlant::Of(const py::object& plant, const RobotSpec& robot,
                                              std::shared_ptr<Callbacks> callbacks) {
   for (const char* name : {"observe", "advance"}) {
-    if (!py::hasattr(plant, name)) {
-      throw py::type_error("plant: " + py::repr(plant).cast<std::string>() +
-                           "; expected an object with observe() and advance(step_s, time_s, "
-                           "commands), or a taut.Replay");
+    if (!HasMethod(plant, name)) {
+      Unexpected(plant, "plant",
+                 "an object with observe() and advance(step_s, time_s, commands), or a "
+                 "taut.Replay");
     }
   }
   return std::make_unique<CallingPlant>(plant, robot, std::move(callbacks));

@@ -67,6 +67,7 @@ class Recorded {
 Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progress,
         const py::object& controllers, const py::object& plant) {
   Threads(threads);
+  CallableOrNone(progress, "progress");
   const auto callbacks = std::make_shared<Callbacks>();
   const Extensions extensions = ExtensionsOf(controllers, experiment.robot, callbacks);
   std::unique_ptr<Plant> own;

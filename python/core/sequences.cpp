@@ -20,7 +20,7 @@ void PutPositions(const WorldBatch& batch, double* to, py::ssize_t world_stride)
 
 Rows<double> Rollout(Worlds& worlds, const py::object& targets_m, double step_s, int count,
                      const std::optional<py::bytes>& start, const py::object& out) {
-  Positive(step_s, "step_s");
+  StepLength(step_s);
   if (count < 1) throw py::value_error(fmt::format("count: {}; expected at least 1", count));
   const auto given = py::array::ensure(targets_m);
   PyErr_Clear();

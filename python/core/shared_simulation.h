@@ -35,8 +35,7 @@ class SharedSimulation : public OwnedWorlds<Simulation> {
                 std::optional<int> (*find)(const ModelDef&, std::string_view, Diagnostics*)) const {
     if (!py::isinstance<py::str>(given)) {
       if (PyIndex_Check(given.ptr()) == 0 || py::isinstance<py::bool_>(given)) {
-        throw py::type_error(std::string(kind) + ": " + py::repr(given).cast<std::string>() +
-                             "; expected a name or an index");
+        Unexpected(given, kind, "a name or an index");
       }
       return Index(given.cast<py::ssize_t>(), static_cast<int>(elements.size()), kind);
     }

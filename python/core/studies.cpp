@@ -58,8 +58,11 @@ class Progress {
 };
 
 Found Learn(const std::string& path, const std::optional<std::string>& folder, int threads,
-            const py::object& progress, bool skip_damaged, const py::kwargs& set) {
+            const py::object& progress, const py::object& skip_damaged_given,
+            const py::kwargs& set) {
   Threads(threads);
+  CallableOrNone(progress, "progress");
+  const bool skip_damaged = Flag(skip_damaged_given, "skip_damaged");
   const Overrides overrides = OverridesOf(set);
   Diagnostics said;
   std::optional<StudySpec> study;
@@ -177,8 +180,13 @@ void AddStudies(py::module_& module) {
       "arguments set named parameters of the study, its experiment or model. `threads`: number of "
       "threads; 0: one per core. `progress(evaluations, budget, best_score)` is called a few times "
       "per second. Returns a `taut.Study`. After Ctrl-C the same call resumes.");
-  module.def("read_study", &FoundIn, py::arg("folder"), py::arg("skip_damaged") = false,
-             "Reads the results in a study's folder. Returns a `taut.Study`.");
+  module.def(
+      "read_study",
+      [](const std::string& folder, const py::object& skip_damaged) {
+        return FoundIn(folder, Flag(skip_damaged, "skip_damaged"));
+      },
+      py::arg("folder"), py::arg("skip_damaged") = false,
+      "Reads the results in a study's folder. Returns a `taut.Study`.");
 }
 
 }  // namespace taut::python

@@ -10,6 +10,7 @@
 #include "taut/input_names.h"
 #include "taut/instruction_sets.h"
 #include "taut/shipped.h"
+#include "taut/time_limits.h"
 
 namespace taut::python {
 namespace {
@@ -45,6 +46,11 @@ std::string NotReal(const py::object& given, const py::array& a) {
 }
 
 }  // namespace
+
+void Unexpected(const py::handle& given, const std::string& what, const std::string& expected) {
+  throw py::type_error(what + ": " + py::repr(given).cast<std::string>() + "; expected " +
+                       expected);
+}
 
 std::optional<Simd> SimdOf(const std::optional<std::string>& name) {
   if (!name) return std::nullopt;
@@ -111,13 +117,48 @@ void RefuseName(const Diagnostics& said) {
 
 Overrides OverridesOf(const py::kwargs& values) {
   Overrides overrides;
-  for (const auto& [name, value] : values) {
-    const bool text = py::isinstance<py::str>(value);
-    overrides.emplace_back(name.cast<std::string>(), text
-                                                         ? value.cast<std::string>()
-                                                         : fmt::format("{}", value.cast<double>()));
+  for (const auto& [key, value] : values) {
+    const auto name = key.cast<std::string>();
+    overrides.emplace_back(name,
+                           py::isinstance<py::str>(value)
+                               ? value.cast<std::string>()
+                               : fmt::format("{}", Number(value, name, "a number or a text")));
   }
   return overrides;
+}
+
+double StepLength(double step_s) {
+  if (step_s >= kShortestStep_s && step_s <= kLongestStep_s) return step_s;
+  throw py::value_error(fmt::format("step_s: {}; expected a number from {:g} to {:g} [s]", step_s,
+                                    kShortestStep_s, kLongestStep_s));
+}
+
+py::object CallableOrNone(const py::object& given, const std::string& what) {
+  if (!given.is_none() && PyCallable_Check(given.ptr()) == 0) {
+    Unexpected(given, what, "a function or another callable");
+  }
+  return given;
+}
+
+bool Flag(const py::handle& given, const std::string& what) {
+  py::detail::make_caster<bool> flag;
+  if (!flag.load(given, false)) Unexpected(given, what, "True or False");
+  return py::detail::cast_op<bool>(flag);
+}
+
+double Number(const py::handle& given, const std::string& what, const char* expected) {
+  if (PyNumber_Check(given.ptr()) == 0 || PyBool_Check(given.ptr())) {
+    Unexpected(given, what, expected);
+  }
+  const double number = PyFloat_AsDouble(given.ptr());
+  if (PyErr_Occurred() == nullptr) return number;
+  PyErr_Clear();
+  Unexpected(given, what, expected);
+}
+
+std::string Text(const py::handle& given, const std::string& what) {
+  if (!py::isinstance<py::str>(given)) Unexpected(given, what, "a text");
+  return given.cast<std::string>();
 }
 
 std::uint64_t Seed(const py::object& given) {

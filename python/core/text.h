@@ -54,6 +54,10 @@ void Tell(const Diagnostics& said);
 /// Raises `taut.InputError` unconditionally.
 [[noreturn]] void Refuse(const Diagnostics& said);
 
+/// Raises TypeError: "progress: 5; expected a function".
+[[noreturn]] void Unexpected(const py::handle& given, const std::string& what,
+                             const std::string& expected);
+
 /// Raises KeyError for a name that a search did not find. `said`: error of the search.
 [[noreturn]] void RefuseName(const Diagnostics& said);
 
@@ -74,6 +78,23 @@ inline double Positive(double value, const char* what) {
   }
   return value;
 }
+
+/// Returns `step_s`; raises ValueError unless it is a step length of experiment files.
+double StepLength(double step_s);
+
+/// Returns `given`; raises TypeError, which contains `what`, unless it is None or callable.
+py::object CallableOrNone(const py::object& given, const std::string& what);
+
+/// Returns a bool of Python or NumPy; raises TypeError, which contains `what`, for other values,
+/// whose truth is rarely meant: "no" and 0.5 are true.
+bool Flag(const py::handle& given, const std::string& what);
+
+/// Returns a real number; raises TypeError, which contains `what` and `expected`, for other values
+/// and for bools.
+double Number(const py::handle& given, const std::string& what, const char* expected = "a number");
+
+/// Returns a text; raises TypeError, which contains `what`, for other values.
+std::string Text(const py::handle& given, const std::string& what);
 
 /// Returns a seed: an integer, not a bool, from 0 to 2^64 - 1; raises ValueError otherwise.
 std::uint64_t Seed(const py::object& given);

@@ -61,6 +61,8 @@ def rollout(experiment: Experiment, objective: Objective, worlds: Union[int, Seq
     """
     if isinstance(objective, str):
         objective = {"measure": objective}
+    if not isinstance(objective, Mapping):
+        raise TypeError(f"objective: {objective!r}; expected a dict or the name of a measure")
     if isinstance(worlds, (int, np.integer)):
         if worlds < 0:
             raise ValueError(f"worlds: {worlds}; expected 0 or more")

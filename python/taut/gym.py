@@ -13,6 +13,7 @@ actions a world is bit-identical, independent of all other worlds.
 
 import enum as _enum
 import numbers as _numbers
+import os as _os
 import re as _re
 from typing import Any as _Any
 
@@ -54,7 +55,9 @@ def _experiment(experiment, set_):
         if set_:
             raise ValueError("set: supported only for an experiment given as a path")
         return experiment
-    loaded = _core.load(str(experiment), **(set_ or {}))
+    if not isinstance(experiment, (str, _os.PathLike)):
+        raise TypeError(f"experiment: {experiment!r}; expected an Experiment or the path of an experiment file")
+    loaded = _core.load(_os.fspath(experiment), **(set_ or {}))
     if not isinstance(loaded, _core.Experiment):
         raise ValueError(f"{experiment}: a model; expected an experiment")
     return loaded
@@ -67,6 +70,21 @@ def _seed(seed, worlds=1):
     if not whole or not 0 <= int(seed) < below:
         raise ValueError(f"seed: {seed!r}; expected a whole number, 0 or more, below {below}")
     return int(seed)
+
+
+def _flag(value, name):
+    """Returns a bool; raises TypeError for other values, whose truth is rarely meant."""
+    if not isinstance(value, (bool, _np.bool_)):
+        raise TypeError(f"{name}: {value!r}; expected True or False")
+    return bool(value)
+
+
+def _mask(mask, worlds):
+    """Returns a mask of worlds as bytes; raises ValueError unless it is an array (worlds,) of bools, 0 and 1."""
+    array = _np.asarray(mask)
+    if array.shape != (worlds,) or array.dtype.kind not in "biu" or not _np.isin(array, (0, 1)).all():
+        raise ValueError(f"reset_mask: {mask!r}; expected {worlds} bools")
+    return _np.ascontiguousarray(array.astype(_np.uint8))
 
 
 def _real(actions):
@@ -101,6 +119,7 @@ class VectorEnv(_VectorBase):
             raise ValueError(f"dtype: {dtype}; expected float32 or float64")
         if not isinstance(autoreset_mode, AutoresetMode):
             autoreset_mode = AutoresetMode(autoreset_mode)
+        copy = _flag(copy, "copy")
         if seed is not None:
             seed = _seed(seed, max(num_envs, 1))
         self._core = _core.Environments(
@@ -164,7 +183,7 @@ class VectorEnv(_VectorBase):
             else:
                 seeds = _np.array([_seed(one) for one in seed], dtype=_np.uint64)
         if mask is not None:
-            mask = _np.ascontiguousarray(_np.asarray(mask, bool).astype(_np.uint8))
+            mask = _mask(mask, self.num_envs)
         observations = self._fresh(self._observations)
         self._reset(seeds, mask, observations)
         self._observations = observations

@@ -86,6 +86,108 @@ class Values(unittest.TestCase):
             with self.assertRaisesRegex((ValueError, TypeError), "seed"):
                 experiment.seed = wrong
 
+    def test_functions_are_callable(self):
+        experiment = taut.load(PUSH)
+        for wrong in (5, "print", [], object()):
+            named = r"progress: .*; expected a function"
+            with self.assertRaisesRegex(TypeError, named):
+                taut.run(experiment, progress=wrong)
+            with self.assertRaisesRegex(TypeError, named):
+                taut.rollout(experiment, "distance", 1, progress=wrong)
+            with self.assertRaisesRegex(TypeError, named):
+                taut.learn("no_such_study", progress=wrong)
+            with self.assertRaisesRegex(TypeError, named):
+                taut.fit("no_such_fit", progress=wrong)
+            with self.assertRaisesRegex(TypeError, "observe: .*; expected a function"):
+                taut.gym.make_vec(SPINE, observe=wrong)
+            with self.assertRaisesRegex(TypeError, "judge: .*; expected a function"):
+                taut.gym.make_vec(SPINE, judge=wrong)
+
+    def test_methods_of_controllers_and_plants_are_callable(self):
+        experiment = taut.load(PUSH)
+
+        class Controller:
+            period_s, act, save, restore = 0.01, print, print, print
+
+        for name, wrong in (("act", 5), ("save", "no"), ("restore", 1.0), ("stateless", "no"), ("stateless", 1)):
+            controller = Controller()
+            setattr(controller, name, wrong)
+            with self.assertRaisesRegex(TypeError, r"controllers\[0\]"):
+                taut.Simulation(experiment, controllers=[controller])
+
+        class Plant:
+            observe, advance = 5, print
+
+        with self.assertRaisesRegex(TypeError, "plant: .*; expected an object with observe"):
+            taut.run(experiment, plant=Plant())
+
+    def test_flags_are_bools(self):
+        experiment = taut.load(PUSH)
+        for wrong in ("no", 1, 0.5, None, []):
+            expected = "; expected True or False"
+            with self.assertRaisesRegex(TypeError, "skip_damaged: .*" + expected):
+                taut.learn("no_such_study", skip_damaged=wrong)
+            with self.assertRaisesRegex(TypeError, "skip_damaged: .*" + expected):
+                taut.read_study("no_such_folder", skip_damaged=wrong)
+            with self.assertRaisesRegex(TypeError, "design: .*" + expected):
+                taut.fit("no_such_fit", design=wrong)
+            with self.assertRaisesRegex(TypeError, "differences: .*" + expected):
+                taut.linear_system(experiment, differences=wrong)
+            with self.assertRaisesRegex(TypeError, "differenced_rate: .*" + expected):
+                taut.control.impedance(experiment.robot, differenced_rate=wrong)
+            for name in ("randomise", "copy"):
+                with self.assertRaisesRegex(TypeError, f"{name}: .*" + expected):
+                    taut.gym.make_vec(SPINE, **{name: wrong})
+        for good in (True, np.True_, np.False_):
+            taut.gym.make_vec(SPINE, randomise=good, copy=good)
+        envs = taut.gym.make_vec(SPINE, 2)
+        for wrong in ("no", [0.5, 1], [2, 0], np.zeros(3, bool), 1):
+            with self.assertRaisesRegex((TypeError, ValueError), "reset_mask"):
+                envs.reset(options={"reset_mask": wrong})
+        envs.reset(options={"reset_mask": [True, False]})
+
+    def test_texts_are_texts(self):
+        experiment = taut.load(PUSH)
+        for call in (lambda wrong: taut.load(wrong), lambda wrong: taut.read_trace(wrong),
+                     lambda wrong: taut.learn(wrong), lambda wrong: taut.read_study(wrong), lambda wrong: taut.fit(wrong),
+                     lambda wrong: taut.gym.make_vec(wrong), lambda wrong: taut.Simulation(wrong),
+                     lambda wrong: taut.control.impedance(experiment.robot, [wrong]),
+                     lambda wrong: taut.control.position(experiment.robot, {wrong: [(0, 1)]}),
+                     lambda wrong: taut.rollout(experiment, wrong, 1),
+                     lambda wrong: taut.fit("no_such_fit", profiles=[wrong]),
+                     lambda wrong: taut.Batch(experiment.robot, simd=wrong), lambda wrong: taut.load(PUSH, push_n=wrong)):
+            for wrong in (5.5j, object(), (1, 2)):
+                with self.assertRaises(TypeError, msg=repr(wrong)):
+                    call(wrong)
+        with self.assertRaisesRegex(TypeError, "push_n: .*; expected a number or a text"):
+            taut.load(PUSH, push_n=[1])
+        with self.assertRaisesRegex(TypeError, "push_n: True; expected a number or a text"):
+            taut.load(PUSH, push_n=True)
+
+    def test_steps_and_times_have_limits(self):
+        experiment = taut.load(PUSH)
+        batch, sim = taut.Batch(experiment.robot), taut.Simulation(experiment)
+        before, before_too = batch.hash(), sim.hash()
+        for wrong in (1e308, 1.001, 1e-10, 0, -1e-3, float("nan"), float("inf")):
+            with self.assertRaisesRegex(ValueError, r"step_s: .*; expected a number from 1e-09 to 1 \[s\]"):
+                batch.step(wrong)
+            with self.assertRaisesRegex(ValueError, r"step_s: .*; expected a number from 1e-09 to 1 \[s\]"):
+                batch.rollout(batch.rest_length_target_m()[:, None], wrong)
+        for wrong in (2**63, 1e300, 1.1e9, float("nan"), float("inf"), -float("inf")):
+            with self.assertRaisesRegex(ValueError, r"time_s: .*; expected a finite number up to 1e\+09 \[s\]"):
+                sim.run_until(wrong)
+            with self.assertRaisesRegex(ValueError, r"duration_s: .*; expected a positive number up to 1e\+09 \[s\]"):
+                experiment.duration_s = wrong
+        for wrong in (-1, 1.5, 2**31, 2**63):
+            with self.assertRaises((TypeError, ValueError)):
+                batch.step(1e-3, wrong)
+            with self.assertRaises((TypeError, ValueError)):
+                sim.step(wrong)
+        self.assertEqual((batch.hash(), sim.hash()), (before, before_too))
+        batch.step(1e-9)
+        batch.step(1.0, 0)
+        sim.run_until(-5)
+
 
 if __name__ == "__main__":
     main()
