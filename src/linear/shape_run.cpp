@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "math/angle.h"
 #include "math/vec.h"
@@ -94,8 +95,8 @@ void Note(const std::vector<double>& row, std::size_t cables, RunSummary& summar
   }
 }
 
-bool Fill(const RunFolder& folder, const ExperimentSpec& e, const Shape& shape,
-          const ShapeLook& look, RunSummary& summary, Diagnostics& out) {
+bool Fill(RunFolder& folder, const ExperimentSpec& e, const Shape& shape, const ShapeLook& look,
+          RunSummary& summary, Diagnostics& out) {
   const ModelDef& def = e.robot.def;
   const auto model = Model::CompileForExperiment(def, out);
   if (!model) return false;
@@ -114,8 +115,9 @@ bool Fill(const RunFolder& folder, const ExperimentSpec& e, const Shape& shape,
   if (!shape.translation_m.empty()) {
     metadata.emplace_back("shape_amplitude", fmt::format("{}", look.size));
   }
-  const auto trace = CreateHdf5Trace(folder.Path("trace.h5"), Channels(def), metadata, out);
+  auto trace = CreateHdf5Trace(folder.Path("trace.h5"), Channels(def), metadata, out);
   if (!trace) return false;
+  trace = folder.BeginWith(std::move(trace), {"trace.h5"});
   const double way = GreatestWay(def, shape);
   const double amplitude = way > 0 ? look.size * SizeOf(def) / way : 0;
   const int rows = static_cast<int>(std::lround(e.duration_s * look.rate_hz));
@@ -175,7 +177,7 @@ bool WriteShapeRun(const std::string& path, const ExperimentSpec& experiment, co
   const auto folder = RunFolder::Open(path, {}, out);
   RunSummary summary;
   for (const CableDef& cable : e.robot.def.cables) summary.cables.emplace_back().name = cable.name;
-  if (!folder || !folder->Prepare(ResolvedYaml(e), out) || !folder->Begin(out) ||
+  if (!folder || !folder->Prepare(ResolvedYaml(e), out) ||
       !Fill(*folder, e, shape, look, summary, out)) {
     return false;
   }

@@ -1,4 +1,6 @@
 // The commands `taut analyze` and `taut size`
+#include <sys/resource.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -135,6 +137,25 @@ TEST_F(AnalyzeCommand, AGaitIsRefused) {
       Taut({"analyze", TAUT_SOURCE_DIR "/share/gaits/hand_tuned_sine.yaml"});
   EXPECT_EQ(shown.status, 3);
   EXPECT_NE(shown.errors.find("is a gait"), std::string::npos) << shown.errors;
+}
+
+TEST_F(AnalyzeCommand, ShapesStayWholeUntilNewOnesHaveTheirFirstRow) {
+  const std::vector<std::string> words = {
+      "analyze", TAUT_SOURCE_DIR "/share/models/prism3.yaml", "--modes", "1", "--out", "shapes"};
+  ASSERT_EQ(Taut(words).status, 0);
+  const std::string shape = Path("shapes/mode_1/");
+  const std::string summary = Read(shape + "summary.json"), inputs = Read(shape + "inputs.yaml");
+  // A limit of the file size acts like a disk with room for inputs.yaml, but not for the trace.
+  const rlim_t bytes = 2 * inputs.size();
+  ASSERT_LT(bytes, std::filesystem::file_size(shape + "trace.h5"));
+  const test::CommandResult full = Taut(words, [bytes] {
+    const rlimit size{bytes, bytes};
+    if (setrlimit(RLIMIT_FSIZE, &size) != 0) _exit(96);
+  });
+  EXPECT_EQ(full.status, 1) << full.output;
+  EXPECT_EQ(Read(shape + "summary.json"), summary);
+  EXPECT_EQ(Read(shape + "inputs.yaml"), inputs);
+  EXPECT_EQ(Taut({"report", "shapes/mode_1"}).status, 0);
 }
 
 TEST_F(AnalyzeCommand, SizeSaysWhatARunAsksFor) {
