@@ -1,6 +1,9 @@
 // Load cases of an experiment: forces, settlements, changes of length and temperature.
 #include <cmath>
 #include <map>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
 
 #include "base/fixed.h"
 #include "description/experiment/experiment_parts.h"
@@ -31,9 +34,15 @@ int Find(const Placed& name, const char* kind, const std::vector<Named>& all,
 
 class CaseReader {
  public:
-  CaseReader(const RobotSpec& robot, const Scope& scope) : robot_(robot), scope_(scope) {
+  CaseReader(const RobotSpec& robot, const Scope& scope)
+      : robot_(robot), scope_(scope), line_loads_(robot, scope) {
+    for (std::size_t i = 0; i < robot.def.nodes.size(); ++i) {
+      node_of_.emplace(robot.def.nodes[i].name, static_cast<int>(i));
+    }
     for (const JointDef& joint : robot.def.joints) {
       is_support_.push_back(base::IsFixed(robot.def, joint.body_a) && !IsBar(joint));
+      if (!is_support_.back()) continue;
+      support_of_.emplace(joint.name, static_cast<int>(is_support_.size()) - 1);
     }
   }
 
@@ -45,10 +54,14 @@ class CaseReader {
     out.max_displacement_m = text.max_displacement_m;
     for (const NodeForceText& force : text.forces) {
       for (const int node : Nodes(force)) out.forces.push_back({node, force.force_n});
+      if (out.forces.size() > kMostLoads) return out;
     }
-    for (const LineLoadText& line : text.lines) AddLineLoad(line, robot_, scope_, out);
+    if (!text.lines.empty()) line_loads_.AddTo(out, text.lines);
     for (const SettlementText& settlement : text.settlements) {
-      const int joint = Find(settlement.support, "support", robot_.def.joints, is_support_, scope_);
+      const auto known = support_of_.find(settlement.support.text);
+      const int joint = known != support_of_.end() ? known->second
+                                                   : Find(settlement.support, "support",
+                                                          robot_.def.joints, is_support_, scope_);
       if (joint >= 0) out.settlements.push_back({joint, settlement.by_m});
     }
     gains_.clear();
@@ -83,18 +96,20 @@ class CaseReader {
   /// Returns the node, or the selected nodes, of a force.
   std::vector<int> Nodes(const NodeForceText& force) const {
     if (!force.nodes.value) {
+      const auto known = node_of_.find(force.node_name.text);
+      if (known != node_of_.end()) return {known->second};
       const std::vector<bool> all(robot_.def.nodes.size(), true);
       const int node = Find(force.node_name, "node", robot_.def.nodes, all, scope_);
       return node >= 0 ? std::vector{node} : std::vector<int>();
     }
     const auto match = ReadMatch(*force.nodes.value, "forces.nodes", scope_);
     std::vector<int> found;
-    std::vector<std::string> words;
     for (std::size_t i = 0; i < robot_.node_tags.size() && !match.empty(); ++i) {
       if (Matches(match, robot_.node_tags[i])) found.push_back(static_cast<int>(i));
-      words.insert(words.end(), robot_.node_tags[i].begin(), robot_.node_tags[i].end());
     }
     if (found.empty() && !match.empty()) {
+      std::vector<std::string> words;
+      for (const auto& tags : robot_.node_tags) words.insert(words.end(), tags.begin(), tags.end());
       scope_.out.Error("load_case.matches_no_node", force.nodes.value->at,
                        "forces.nodes: no node matches " + Written(*force.nodes.value),
                        UnknownWord(match, words, "node"));
@@ -136,9 +151,34 @@ class CaseReader {
 
   const RobotSpec& robot_;
   const Scope& scope_;
+  LineLoads line_loads_;
+  std::unordered_map<std::string_view, int> node_of_, support_of_;
   std::vector<bool> is_support_;
   std::map<LoadMember, Gain> gains_;
 };
+
+/// Reports selectors that would examine too many elements. Each selector examines all elements.
+bool CheckSelectors(const std::vector<LoadCaseText>& texts, const RobotSpec& robot,
+                    const Scope& scope) {
+  const ModelDef& def = robot.def;
+  const std::size_t elements =
+      def.nodes.size() + def.cables.size() + def.joints.size() + def.capsules.size();
+  std::size_t selectors = 0;
+  for (const LoadCaseText& text : texts) {
+    selectors += text.forces.size() + text.settlements.size() + text.rest_lengths.size() +
+                 text.temperatures.size() + text.lines.size();
+    if (selectors * elements <= kMostExamined) continue;
+    scope.out.Error("load_case.too_many_selectors", text.name.at,
+                    "the " + std::to_string(selectors) + " loads up to this load case and the " +
+                        std::to_string(elements) +
+                        " nodes, cables, joints and rods of the robot have a product of more "
+                        "than " +
+                        std::to_string(kMostExamined),
+                    "use selectors that match several parts, or several experiments");
+    return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -147,9 +187,25 @@ std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
                                       const RobotSpec* robot, const Scope& scope) {
   std::vector<LoadCaseSpec> cases;
   std::map<std::string, SourceRef> names;
+  if (texts.size() + combinations.size() > kMostCases) {
+    scope.out.Error("load_case.too_many", (texts.empty() ? combinations[0].name : texts[0].name).at,
+                    "there are " + std::to_string(texts.size() + combinations.size()) +
+                        " load cases and combinations, more than " + std::to_string(kMostCases),
+                    "analyze them in several experiments");
+    return cases;
+  }
+  if (robot && !CheckSelectors(texts, *robot, scope)) return cases;
+  std::optional<CaseReader> reader;
+  if (robot) reader.emplace(*robot, scope);
+  std::size_t loads = 0;
   for (const LoadCaseText& text : texts) {
     IsNewCase(text.name, names, scope);
-    if (robot) cases.push_back(CaseReader(*robot, scope).Run(text));
+    if (!reader) continue;
+    cases.push_back(reader->Run(text));
+    loads += LoadCount(cases.back());
+    if (loads <= kMostLoads) continue;
+    RefuseLoads(text.name.at, scope);
+    return {};
   }
   if (robot) AddCombinations(combinations, *robot, names, scope, cases);
   return cases;

@@ -12,106 +12,31 @@ namespace {
 
 constexpr double kSamePoint_m = 1e-9;
 
-/// Point of a body, in the frame of `NodeDef::position_m`.
-struct Point {
-  int body;
-  Vec3 at_m;
-};
-
-std::optional<int> NodeAt(const ModelDef& def, const Point& point) {
-  for (std::size_t i = 0; i < def.nodes.size(); ++i) {
-    const NodeDef& node = def.nodes[i];
-    if (node.body == point.body && Length(node.position_m - point.at_m) <= kSamePoint_m) {
-      return static_cast<int>(i);
-    }
-  }
-  return std::nullopt;
-}
-
-class LineLoad {
- public:
-  LineLoad(const LineLoadText& load, const RobotSpec& robot, const Scope& scope, LoadCaseSpec& out)
-      : load_(load), robot_(robot), scope_(scope), out_(out) {}
-
-  void Run() {
-    if (!load_.members.value) return;
-    const ModelDef& def = robot_.def;
-    for (const LoadMember& member :
-         SelectMembers(*load_.members.value, "line_loads.members", true, robot_, scope_)) {
-      const auto i = static_cast<std::size_t>(member.index);
-      if (member.kind == LoadMember::Kind::kCable) {
-        Cable(def.cables[i]);
-      } else if (member.kind == LoadMember::Kind::kBar) {
-        const JointDef& bar = def.joints[i];
-        Span({bar.body_a, bar.from_m}, {bar.body_b, bar.to_m}, bar.name);
-      } else {
-        const CapsuleDef& rod = def.capsules[i];
-        Span({rod.body, rod.from_m}, {rod.body, rod.to_m}, rod.name);
-      }
-    }
-  }
-
- private:
-  void Cable(const CableDef& cable) {
-    for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
-      const AttachmentDef &from = cable.attachments[i - 1], &to = cable.attachments[i];
-      Span({from.body, from.position_m}, {to.body, to.position_m}, cable.name);
-    }
-  }
-
-  void Span(const Point& from, const Point& to, const std::string& member) {
-    const double half_m = 0.5 * Length(from.at_m - to.at_m);
-    for (const Point& end : {from, to}) {
-      const auto node = NodeAt(robot_.def, end);
-      if (!node && end.body == kWorld) continue;
-      if (!node) {
-        scope_.out.Error("load_case.end_without_node", load_.members.value->at,
-                         "line_loads.members: \"" + member + "\" has no node at its end",
-                         "add a node to the part there");
-        return;
-      }
-      Add(*node, half_m * load_.force_n_per_m);
-    }
-  }
-
-  /// Members that meet at a node add up there.
-  void Add(int node, const Vec3& force_n) {
-    for (LoadCaseSpec::NodeForce& force : out_.forces) {
-      if (force.node != node) continue;
-      force.force_n = force.force_n + force_n;
-      return;
-    }
-    out_.forces.push_back({node, force_n});
-  }
-
-  const LineLoadText& load_;
-  const RobotSpec& robot_;
-  const Scope& scope_;
-  LoadCaseSpec& out_;
-};
+/// Position of a cable or a bar in the changes of length of a sum.
+using Positions = std::map<int, std::size_t>;
 
 /// Adds `factor` times the changes of length to those of the sum.
 void AddLengthenings(const std::vector<LoadCaseSpec::Lengthening>& from, double factor,
-                     std::vector<LoadCaseSpec::Lengthening>& sum) {
+                     std::vector<LoadCaseSpec::Lengthening>& sum, Positions& positions) {
   for (const LoadCaseSpec::Lengthening& one : from) {
-    const auto same = std::find_if(sum.begin(), sum.end(),
-                                   [&](const auto& other) { return other.index == one.index; });
-    if (same == sum.end()) {
+    const auto [at, fresh] = positions.emplace(one.index, sum.size());
+    if (fresh) {
       sum.push_back({one.index, factor * one.by_m});
     } else {
-      same->by_m += factor * one.by_m;
+      sum[at->second].by_m += factor * one.by_m;
     }
   }
 }
 
-void AddCase(const LoadCaseSpec& one, double factor, LoadCaseSpec& sum) {
+void AddCase(const LoadCaseSpec& one, double factor, LoadCaseSpec& sum, Positions& cables,
+             Positions& bars) {
   sum.weight_factor += factor * one.GravityFactor();
   for (const auto& force : one.forces) sum.forces.push_back({force.node, factor * force.force_n});
   for (const auto& settled : one.settlements) {
     sum.settlements.push_back({settled.joint, factor * settled.by_m});
   }
-  AddLengthenings(one.cables, factor, sum.cables);
-  AddLengthenings(one.bars, factor, sum.bars);
+  AddLengthenings(one.cables, factor, sum.cables, cables);
+  AddLengthenings(one.bars, factor, sum.bars, bars);
 }
 
 /// Reports members without a positive rest length under a combination.
@@ -129,9 +54,87 @@ void CheckRestLengths(const LoadCaseSpec& sum, const RobotSpec& robot, const Sou
 
 }  // namespace
 
-void AddLineLoad(const LineLoadText& load, const RobotSpec& robot, const Scope& scope,
-                 LoadCaseSpec& out) {
-  LineLoad(load, robot, scope, out).Run();
+LineLoads::LineLoads(const RobotSpec& robot, const Scope& scope) : robot_(robot), scope_(scope) {
+  for (std::size_t i = 0; i < robot.def.nodes.size(); ++i) {
+    nodes_of_body_[robot.def.nodes[i].body].push_back(static_cast<int>(i));
+  }
+}
+
+void LineLoads::AddTo(LoadCaseSpec& out, const std::vector<LineLoadText>& loads) {
+  out_ = &out;
+  force_at_.clear();
+  for (std::size_t i = 0; i < out.forces.size(); ++i) force_at_.emplace(out.forces[i].node, i);
+  const ModelDef& def = robot_.def;
+  for (const LineLoadText& load : loads) {
+    if (!load.members.value) continue;
+    load_ = &load;
+    for (const LoadMember& member :
+         SelectMembers(*load.members.value, "line_loads.members", true, robot_, scope_)) {
+      const auto i = static_cast<std::size_t>(member.index);
+      if (member.kind == LoadMember::Kind::kCable) {
+        Cable(def.cables[i]);
+      } else if (member.kind == LoadMember::Kind::kBar) {
+        const JointDef& bar = def.joints[i];
+        Span({bar.body_a, bar.from_m}, {bar.body_b, bar.to_m}, bar.name);
+      } else {
+        const CapsuleDef& rod = def.capsules[i];
+        Span({rod.body, rod.from_m}, {rod.body, rod.to_m}, rod.name);
+      }
+    }
+  }
+}
+
+void LineLoads::Cable(const CableDef& cable) {
+  for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
+    const AttachmentDef &from = cable.attachments[i - 1], &to = cable.attachments[i];
+    Span({from.body, from.position_m}, {to.body, to.position_m}, cable.name);
+  }
+}
+
+void LineLoads::Span(const Point& from, const Point& to, const std::string& member) {
+  const double half_m = 0.5 * Length(from.at_m - to.at_m);
+  for (const Point& end : {from, to}) {
+    const auto node = NodeAt(end);
+    if (!node && end.body == kWorld) continue;
+    if (!node) {
+      scope_.out.Error("load_case.end_without_node", load_->members.value->at,
+                       "line_loads.members: \"" + member + "\" has no node at its end",
+                       "add a node to the part there");
+      return;
+    }
+    Add(*node, half_m * load_->force_n_per_m);
+  }
+}
+
+std::optional<int> LineLoads::NodeAt(const Point& point) const {
+  const auto nodes = nodes_of_body_.find(point.body);
+  if (nodes == nodes_of_body_.end()) return std::nullopt;
+  for (const int i : nodes->second) {
+    const NodeDef& node = robot_.def.nodes[static_cast<std::size_t>(i)];
+    if (Length(node.position_m - point.at_m) <= kSamePoint_m) return i;
+  }
+  return std::nullopt;
+}
+
+void LineLoads::Add(int node, const Vec3& force_n) {
+  const auto [at, fresh] = force_at_.emplace(node, out_->forces.size());
+  if (fresh) {
+    out_->forces.push_back({node, force_n});
+  } else {
+    Vec3& sum = out_->forces[at->second].force_n;
+    sum = sum + force_n;
+  }
+}
+
+std::size_t LoadCount(const LoadCaseSpec& one) {
+  return one.forces.size() + one.settlements.size() + one.cables.size() + one.bars.size();
+}
+
+void RefuseLoads(const SourceRef& at, const Scope& scope) {
+  scope.out.Error("load_case.too_many_loads", at,
+                  "the load cases and combinations up to this one have more than " +
+                      std::to_string(kMostLoads) + " forces and changes of length",
+                  "analyze them in several experiments");
 }
 
 bool IsNewCase(const Placed& name, std::map<std::string, SourceRef>& names, const Scope& scope) {
@@ -146,23 +149,39 @@ void AddCombinations(const std::vector<LoadCombinationText>& combinations, const
                      std::map<std::string, SourceRef>& names, const Scope& scope,
                      std::vector<LoadCaseSpec>& cases) {
   std::vector<std::string> known;
-  for (const LoadCaseSpec& one : cases) known.push_back(one.name);
+  std::map<std::string, std::size_t> case_of;
+  std::size_t loads = 0;
+  for (const LoadCaseSpec& one : cases) {
+    case_of.emplace(one.name, known.size());
+    known.push_back(one.name);
+    loads += LoadCount(one);
+  }
+  // Before memory is allocated: a few bytes of the file repeat all loads of a case.
+  for (const LoadCombinationText& text : combinations) {
+    for (const auto& factor : text.factors.items) {
+      const auto found = case_of.find(factor.name);
+      if (found != case_of.end()) loads += LoadCount(cases[found->second]);
+    }
+    if (loads > kMostLoads) return RefuseLoads(text.name.at, scope);
+  }
   for (const LoadCombinationText& text : combinations) {
     IsNewCase(text.name, names, scope);
     LoadCaseSpec sum;
     sum.name = text.name.text;
     sum.weight_factor = 0.0;
     sum.max_displacement_m = text.max_displacement_m;
+    Positions cables, bars;
     for (const auto& factor : text.factors.items) {
-      const auto found = std::find(known.begin(), known.end(), factor.name);
-      if (found == known.end()) {
+      const auto found = case_of.find(factor.name);
+      if (found == case_of.end()) {
         scope.out.Error(
             "load_combination.unknown_case", factor.name_at,
             "there is no load case \"" + factor.name + "\"",
             known.empty() ? std::string("the experiment has none") : NameHint(factor.name, known));
         continue;
       }
-      AddCase(cases[static_cast<std::size_t>(found - known.begin())], factor.value, sum);
+      const LoadCaseSpec& one = cases[found->second];
+      AddCase(one, factor.value, sum, cables, bars);
     }
     sum.weight = sum.weight_factor != 0.0;
     CheckRestLengths(sum, robot, text.name.at, scope);

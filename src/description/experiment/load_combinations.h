@@ -1,7 +1,9 @@
-/// Line loads and combinations of load cases.
+/// Line loads and combinations of load cases, and their limits.
 #pragma once
 
+#include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +11,42 @@
 
 namespace taut::description {
 
-/// Adds the line load of the selected members to the forces of `out`: half of the load of each
-/// member (for a cable, of each span) at either end.
-void AddLineLoad(const LineLoadText& load, const RobotSpec& robot, const Scope& scope,
-                 LoadCaseSpec& out);
+/// Limits of an experiment: load cases and combinations; elements of the robot that their selectors
+/// examine, all selectors together; forces, settlements and changes of length in all of them.
+inline constexpr std::size_t kMostCases = 10'000, kMostExamined = 100'000'000,
+                             kMostLoads = 10'000'000;
+
+/// Returns the number of forces, settlements and changes of length.
+std::size_t LoadCount(const LoadCaseSpec& one);
+
+/// Reports that the loads of all cases exceed kMostLoads.
+void RefuseLoads(const SourceRef& at, const Scope& scope);
+
+/// Forces from loads per length. Reused for all line loads of a robot.
+class LineLoads {
+ public:
+  LineLoads(const RobotSpec& robot, const Scope& scope);
+  /// Adds all line loads to the forces of `out`: half of each member's load (of each span's, for a
+  /// cable) at either end. Forces of members that meet at a node are added up.
+  void AddTo(LoadCaseSpec& out, const std::vector<LineLoadText>& loads);
+
+ private:
+  struct Point {  ///< Point of a body, in the frame of `NodeDef::position_m`.
+    int body;
+    Vec3 at_m;
+  };
+  void Cable(const CableDef& cable);
+  void Span(const Point& from, const Point& to, const std::string& member);
+  std::optional<int> NodeAt(const Point& point) const;
+  void Add(int node, const Vec3& force_n);
+
+  const RobotSpec& robot_;
+  const Scope& scope_;
+  std::map<int, std::vector<int>> nodes_of_body_;
+  std::map<int, std::size_t> force_at_;  ///< Index of the first force on a node, in `out`.
+  const LineLoadText* load_ = nullptr;
+  LoadCaseSpec* out_ = nullptr;
+};
 
 /// Appends the combinations to `cases`. Their factors name the cases that are already in this list.
 /// `names`: all names so far.

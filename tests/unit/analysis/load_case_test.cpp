@@ -240,5 +240,47 @@ TEST_F(LoadCases, RobotsWithBarsAreWrittenAsModels) {
   }
 }
 
+TEST_F(LoadCases, NumbersHaveLimits) {
+  std::string many = "load_combinations:\n";
+  for (int i = 0; i < 9999; ++i)
+    many += "  - {name: k" + std::to_string(i) + ", factors: {snow: 1}}\n";
+  EXPECT_EQ(
+      After("load_cases:\n", many + "load_cases:\n"),
+      "10007:11: error: there are 10001 load cases and combinations, more than 10000 (analyze "
+      "them in several experiments)\n");
+  many.erase(many.rfind("  - "));  // 10000 are read at once
+  EXPECT_EQ(After("load_cases:\n", many + "load_cases:\n"), "");
+}
+
+TEST_F(LoadCases, CombinationsThatRepeatTooManyLoadsAreRefusedBeforeTheirForcesExist) {
+  std::string many = "load_combinations:\n";
+  for (int i = 0; i < 9990; ++i)
+    many += "  - {name: k" + std::to_string(i) + ", factors: {snow: 1}}\n";
+  std::string forces = "    forces:\n";
+  for (int i = 0; i < 1001; ++i) forces += "      - {node: c, force_n: [0, 0, -100]}\n";
+  EXPECT_EQ(
+      After("load_cases:\n  - name: snow\n    forces:\n",
+            many + "load_cases:\n  - name: snow\n" + forces),
+      "9986:12: error: the load cases and combinations up to this one have more than 10000000 "
+      "forces and changes of length (analyze them in several experiments)\n");
+}
+
+TEST_F(LoadCases, SelectorsThatExamineTooManyPartsAreRefused) {
+  Write("model.yaml",
+        "taut: 1\nkind: model\nname: many\nallow_disconnected: true\n"
+        "parts: {ball: {nodes: {a: {at_m: [0, 0, 1], tags: [ball]}}}}\n"
+        "structure: [{part: ball, copies: 10000, step_m: [0, 1, 0]}]\n"
+        "builders: [{match: ball, sphere: {radius_m: 0.1, mass_kg: 1}}]\n");
+  std::string cases =
+      "taut: 1\nkind: experiment\nname: loads\nmodel: model.yaml\nduration_s: 1\n"
+      "load_cases:\n  - name: snow\n    forces:\n";
+  for (int i = 0; i <= 10'000; ++i) cases += "      - {nodes: ball, force_n: [0, 0, -1]}\n";
+  Write("trial.yaml", cases);
+  EXPECT_EQ(Without("trial.yaml:", Complaints()),
+            "7:11: error: the 10001 loads up to this load case and the 10000 nodes, cables, joints "
+            "and rods of the robot have a product of more than 100000000 (use selectors that match "
+            "several parts, or several experiments)\n");
+}
+
 }  // namespace
 }  // namespace taut::test
