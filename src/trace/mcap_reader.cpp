@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <optional>
 
 #include "base/input_file.h"
@@ -88,19 +87,21 @@ bool McapReader::Records(std::string_view bytes, const std::function<bool(const 
     Fields of(content);
     if (op == kSchemaOp) {
       const auto id = static_cast<std::uint16_t>(of.Int(2));
-      std::array<std::string, 3> schema;
-      for (std::string& part : schema) part = of.Text();
-      schemas_[id] = schema;
+      McapSchema schema;
+      for (std::string* const part : {&schema.name, &schema.encoding, &schema.text}) {
+        *part = of.Text();
+      }
+      schemas_[id] = std::make_shared<const McapSchema>(std::move(schema));
     } else if (op == kChannelOp) {
       const auto id = static_cast<std::uint16_t>(of.Int(2));
       const auto schema = schemas_.find(static_cast<std::uint16_t>(of.Int(2)));
       McapChannel& channel = channels_[id];
       channel.topic = of.Text();
       channel.encoding = of.Text();
-      if (schema != schemas_.end()) {
-        channel.schema_name = schema->second[0];
-        channel.schema_encoding = schema->second[1];
-        channel.schema = schema->second[2];
+      if (schema != schemas_.end()) channel.schema = schema->second;
+      if (channel.topic.size() > kMostMcapNameBytes) {
+        return Damaged(
+            fmt::format("the name of a topic has more than {} bytes", kMostMcapNameBytes));
       }
     } else if (op == kMessageOp) {
       McapMessage message;

@@ -1,10 +1,11 @@
 /// Records of MCAP files (https://mcap.dev/spec, version 0).
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,10 +22,18 @@ struct McapMessage {
   std::string_view data;
 };
 
+struct McapSchema {
+  std::string name, encoding, text;
+};
+
 struct McapChannel {
   std::string topic, encoding;  ///< Encoding of the messages: "json", "cdr".
-  std::string schema_name, schema_encoding, schema;
+  std::shared_ptr<const McapSchema> schema =
+      std::make_shared<McapSchema>();  ///< Shared: it may be large.
 };
+
+/// Longest topic or channel name [bytes]. Each number of a message has its own name.
+inline constexpr std::size_t kMostMcapNameBytes = 1000;
 
 /// Reads a file record by record. Compressed chunks are an error, whose message contains the
 /// remedy.
@@ -51,7 +60,7 @@ class McapReader {
 
   std::string path_;
   Diagnostics& out_;
-  std::map<std::uint16_t, std::array<std::string, 3>> schemas_;  ///< Name, encoding, text.
+  std::map<std::uint16_t, std::shared_ptr<const McapSchema>> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
   TraceMetadata metadata_;
   bool unfinished_ = false, stopped_ = false, ended_ = false;

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -23,28 +24,36 @@ constexpr double kEpoch_s = 1e8;
 constexpr std::size_t kMostMcapValues = 100'000'000;
 constexpr std::size_t kMostMcapChannels = 100'000;
 
+/// Reason why a file exceeds the limits; kFits: it does not.
+enum class Excess { kFits, kValues, kNames, kTable };
+
 /// Columns in the order of their first value; each value is a row of its time.
 class Columns {
  public:
   /// Begins a message of a topic.
   void Begin(std::uint16_t topic, std::uint64_t time_ns) { times_ns_[topic].push_back(time_ns); }
 
-  bool Add(std::uint16_t topic, std::uint64_t time_ns, const std::string& name, double value) {
+  Excess Add(std::uint16_t topic, std::uint64_t time_ns, const std::string& name, double value) {
+    if (name.size() > kMostMcapNameBytes) return Excess::kNames;
     const auto [at, fresh] = places_.emplace(name, columns_.size());
     if (fresh) columns_.push_back({name, topic, {}});
     columns_[at->second].points.emplace_back(time_ns, value);
-    return ++values_ <= kMostMcapValues && columns_.size() <= kMostMcapChannels;
+    const bool fits = ++values_ <= kMostMcapValues && columns_.size() <= kMostMcapChannels;
+    return fits ? Excess::kFits : Excess::kValues;
   }
 
   /// Of two values of a time the last one counts; values before the first and after the last
-  /// message of a topic, and in its gaps, are NaN.
-  Trace Take() {
+  /// message of a topic, and in its gaps, are NaN. Returns nothing if the table of all times and
+  /// columns would have too many values: a few megabytes of messages, each with another number,
+  /// would fill the memory.
+  std::optional<Trace> Take() {
     std::map<std::uint64_t, std::size_t> rows;
     for (const Column& column : columns_) {
       for (const auto& point : column.points) rows.emplace(point.first, 0);
     }
     Trace trace;
     if (rows.empty()) return trace;
+    if (rows.size() * columns_.size() > kMostMcapValues) return std::nullopt;
     const std::uint64_t first_ns = rows.begin()->first;
     const std::uint64_t zero_ns = 1e-9 * static_cast<double>(first_ns) > kEpoch_s ? first_ns : 0;
     for (auto& [time_ns, row] : rows) {
@@ -110,6 +119,7 @@ void JsonNumbers(const nlohmann::json& json, const std::string& path, int depth,
                  const std::function<void(const std::string&, double)>& number) {
   constexpr int kDeepestJson = 16;
   if (depth > kDeepestJson) return;
+  if (path.size() > 2 * kMostMcapNameBytes) return number(path, 0);  // refused as too long
   if (json.is_object()) {
     for (const auto& [key, value] : json.items()) {
       JsonNumbers(value, path + "/" + key, depth + 1, number);
@@ -130,8 +140,33 @@ void JsonNumbers(const nlohmann::json& json, const std::string& path, int depth,
 
 /// Topics that taut adds for viewers repeat values of the trace.
 bool IsDrawing(const McapChannel& channel) {
-  return channel.schema_name.starts_with("foxglove.Scene") ||
-         channel.schema_name.starts_with("foxglove.FrameTransform");
+  return channel.schema->name.starts_with("foxglove.Scene") ||
+         channel.schema->name.starts_with("foxglove.FrameTransform");
+}
+
+/// Definition of messages; channels with the same schema share it.
+struct Definition {
+  std::shared_ptr<const McapSchema> schema;  ///< Keeps the key of the definition valid.
+  std::optional<Ros2Message> message;
+  std::string why;  ///< Reason for no message.
+};
+
+void RefuseSize(const std::string& path, Excess excess, Diagnostics& out) {
+  const char* const hint = "take a shorter part of the bag, or fewer topics";
+  if (excess == Excess::kNames) {
+    out.Error("mcap.long_name", {path},
+              fmt::format("the name of a number has more than {} bytes", kMostMcapNameBytes), hint);
+  } else if (excess == Excess::kTable) {
+    out.Error("mcap.too_large_table", {path},
+              "the times of all messages and the numbers form a table of more than 100 million "
+              "values",
+              hint);
+  } else {
+    out.Error("mcap.too_large", {path},
+              "the file has more than 100000 channels or 100 million "
+              "values",
+              hint);
+  }
 }
 
 }  // namespace
@@ -139,55 +174,67 @@ bool IsDrawing(const McapChannel& channel) {
 std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out) {
   McapReader reader(path, out);
   Columns columns;
-  std::map<std::uint16_t, std::optional<Ros2Message>> types;
-  std::set<std::string> unread;  // topics without numbers that taut can decode
-  bool fits = true;
-  std::string why;
+  std::map<const McapSchema*, Definition> definitions;
+  std::map<std::uint16_t, std::string> unread;  // channels without numbers that taut can decode
+  Excess excess = Excess::kFits;
+  const auto leave_out = [&](std::uint16_t channel, const std::string& why) {
+    if (unread.contains(channel)) return;
+    unread[channel] = reader.channels().at(channel).topic + (why.empty() ? "" : " (" + why + ")");
+  };
   const auto use = [&](const McapMessage& message) {
     const McapChannel& channel = reader.channels().at(message.channel);
     const std::string head =
         channel.topic.starts_with('/') ? channel.topic.substr(1) : channel.topic;
     const auto add = [&](const std::string& name, double value) {
-      fits = fits && columns.Add(message.channel, message.log_time_ns, name, value);
+      if (excess != Excess::kFits) return;
+      excess = columns.Add(message.channel, message.log_time_ns, name, value);
     };
+    const auto fits = [&] { return excess == Excess::kFits; };
     if (IsDrawing(channel)) return true;
     columns.Begin(message.channel, message.log_time_ns);
     if (channel.encoding == "json") {
       const auto json = nlohmann::json::parse(message.data, nullptr, false);
-      if (json.is_discarded()) unread.insert(channel.topic + " (a message is not JSON)");
+      if (json.is_discarded()) leave_out(message.channel, "a message is not JSON");
       const std::string top = head == "values" ? "" : "/" + head;
-      JsonNumbers(json, top, 0,
-                  [&](const std::string& name, double value) { add(name.substr(1), value); });
-      return fits;
+      JsonNumbers(json, top, 0, [&](const std::string& name, double value) {
+        if (fits()) add(name.substr(1), value);
+      });
+      return fits();
     }
-    auto type = types.find(message.channel);
-    if (type == types.end()) {
-      const bool known = channel.encoding == "cdr" && channel.schema_encoding == "ros2msg";
-      if (!known) why = "its encoding is " + channel.encoding + ", " + channel.schema_encoding;
-      type = types
-                 .emplace(message.channel,
-                          known ? Ros2Message::Parse(channel.schema_name, channel.schema, why)
-                                : std::nullopt)
-                 .first;
+    if (channel.encoding != "cdr" || channel.schema->encoding != "ros2msg") {
+      leave_out(message.channel,
+                "its encoding is " + channel.encoding + ", " + channel.schema->encoding);
+      return true;
+    }
+    const auto [at, fresh] = definitions.try_emplace(channel.schema.get());
+    Definition& definition = at->second;
+    if (fresh) {
+      definition.schema = channel.schema;
+      definition.message =
+          Ros2Message::Parse(channel.schema->name, channel.schema->text, definition.why);
     }
     const bool decoded =
-        type->second &&
-        type->second->Decode(message.data, [&](const std::string& name, double value) {
+        definition.message &&
+        definition.message->Decode(message.data, [&](const std::string& name, double value) {
           add(head + "/" + name, value);
         });
-    if (!decoded) unread.insert(channel.topic + (why.empty() ? "" : " (" + why + ")"));
-    return fits;
+    if (!decoded) leave_out(message.channel, definition.why);
+    return fits();
   };
   if (!reader.Read(use)) return std::nullopt;
-  if (!fits) {
-    out.Error("mcap.too_large", {path},
-              "the file has more than 100000 channels or 100 million "
-              "values",
-              "take a shorter part of the bag, or fewer topics");
+  std::optional<Trace> table;
+  if (excess == Excess::kFits) {
+    table = columns.Take();
+    if (!table) excess = Excess::kTable;
+  }
+  if (!table) {
+    RefuseSize(path, excess, out);
     return std::nullopt;
   }
-  Trace trace = columns.Take();
-  for (const std::string& topic : unread) {
+  Trace trace = std::move(*table);
+  std::set<std::string> topics;
+  for (const auto& [channel, topic] : unread) topics.insert(topic);
+  for (const std::string& topic : topics) {
     out.Warning("mcap.topic_left_out", {path}, "the topic " + topic + " is left out",
                 "taut reads JSON, and CDR with ros2msg definitions");
   }

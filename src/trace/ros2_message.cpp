@@ -13,6 +13,10 @@ namespace {
 
 constexpr std::uint32_t kMostElements = 64;
 constexpr int kDeepest = 16;
+constexpr std::size_t kMostNameBytes = 1000;
+/// Fields and elements that a message may have, in addition to some for each of its bytes. Types
+/// without fields take no bytes: nested lists of them would never end.
+constexpr std::size_t kFreeSteps = 1000, kStepsPerByte = 8;
 
 struct Primitive {
   std::string_view name;
@@ -69,6 +73,10 @@ std::optional<Ros2Message> Ros2Message::Parse(const std::string& name,
     std::string next;
     words >> next;
     if (next.starts_with('=')) continue;
+    if (std::max(field.name.size(), field.type.size()) > kMostNameBytes) {
+      why = "a name of its definition has more than " + std::to_string(kMostNameBytes) + " bytes";
+      return std::nullopt;
+    }
     if (const std::size_t open = field.type.find('['); open != field.type.npos) {
       field.is_list = true;
       const std::string count = field.type.substr(open + 1, field.type.size() - open - 2);
@@ -101,8 +109,8 @@ class Ros2Message::Decoder {
  public:
   using Numbers = std::function<void(const std::string&, double)>;
 
-  Decoder(const Ros2Message& of, std::string_view data, const Numbers& number)
-      : of_(of), data_(data), number_(number) {}
+  Decoder(const Ros2Message& of, std::string_view data, const Numbers& number, std::size_t& steps)
+      : of_(of), data_(data), number_(number), steps_(steps) {}
 
   bool Run() {
     if (data_.size() < 4 || data_[0] != 0 || (data_[1] != 0 && data_[1] != 1)) return false;
@@ -114,6 +122,13 @@ class Ros2Message::Decoder {
   }
 
  private:
+  /// Counts a field or an element. Returns false if there are too many.
+  bool Step() {
+    if (steps_ == 0) good_ = false;
+    if (good_) --steps_;
+    return good_;
+  }
+
   std::uint64_t Bits(std::size_t size) {
     at_ = (at_ + size - 1) / size * size;
     if (at_ + size > data_.size()) {
@@ -140,16 +155,22 @@ class Ros2Message::Decoder {
     return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
   }
 
-  std::string Text() {
+  std::string_view Text() {
     const std::uint64_t size = Bits(4);  // with a terminating NUL
     if (!good_ || size > data_.size() - at_) {
       good_ = false;
       return {};
     }
-    std::string text(data_.substr(at_, size));
+    std::string_view text = data_.substr(at_, size);
     at_ += size;
-    while (!text.empty() && text.back() == '\0') text.pop_back();
+    while (!text.empty() && text.back() == '\0') text.remove_suffix(1);
     return text;
+  }
+  /// Returns a text that becomes part of names.
+  std::string Name() {
+    const std::string_view text = Text();
+    if (text.size() > kMostNameBytes) good_ = false;
+    return std::string(text.substr(0, kMostNameBytes));
   }
 
   /// `label`: the text of the field that names a list's element.
@@ -158,13 +179,16 @@ class Ros2Message::Decoder {
     if (depth > kDeepest) good_ = false;
     std::vector<std::string> names;  // of the list `name`
     for (const Field& field : of_.types_.at(type)) {
-      if (!good_) return;
+      if (!Step()) return;
       const std::string here = path.empty() ? field.name : path + "/" + field.name;
       if (field.is_list) {
         List(field, here, shown, depth, names);
       } else if (field.type == "string") {
-        std::string text = Text();
-        if (field.name == "child_frame_id") label = std::move(text);
+        if (field.name == "child_frame_id") {
+          label = Name();
+        } else {
+          Text();
+        }
       } else {
         std::string unused;
         Value(field.type, here, shown && field.name != "header", depth, unused);
@@ -192,10 +216,13 @@ class Ros2Message::Decoder {
       return;
     }
     const bool few = count <= kMostElements && !(primitive != nullptr && primitive->size == 1);
-    for (std::uint64_t i = 0; i < count && good_; ++i) {
+    for (std::uint64_t i = 0; i < count && Step(); ++i) {
       if (field.type == "string") {
-        std::string text = Text();
-        if (field.name == "name") names.push_back(std::move(text));
+        if (field.name == "name") {
+          names.push_back(Name());
+        } else {
+          Text();
+        }
         continue;
       }
       const bool named = names.size() == count;
@@ -216,7 +243,7 @@ class Ros2Message::Decoder {
     const Numbers keep = [&](const std::string& of, double value) {
       numbers.emplace_back(of, value);
     };
-    Decoder inner(of_, data_, keep);
+    Decoder inner(of_, data_, keep, steps_);
     inner.big_ = big_;
     inner.at_ = at_;
     std::string label;
@@ -231,13 +258,15 @@ class Ros2Message::Decoder {
   const Ros2Message& of_;
   std::string_view data_;
   const Numbers& number_;
+  std::size_t& steps_;  ///< Left for the whole message.
   std::size_t at_ = 0;
   bool big_ = false, good_ = true;
 };
 
 bool Ros2Message::Decode(std::string_view cdr,
                          const std::function<void(const std::string&, double)>& number) const {
-  return Decoder(*this, cdr, number).Run();
+  std::size_t steps = kFreeSteps + kStepsPerByte * cdr.size();
+  return Decoder(*this, cdr, number, steps).Run();
 }
 
 }  // namespace taut::trace

@@ -104,5 +104,92 @@ TEST_F(McapTrace, DefinitionsAreParsed) {
   EXPECT_EQ(why, "the type b_msgs/C has no definition");
 }
 
+// Bags that this file writes, record by record.
+std::string Bytes(std::uint64_t value, std::size_t size) {
+  std::string bytes;
+  for (std::size_t i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
+  return bytes;
+}
+std::string Sized(const std::string& text) { return Bytes(text.size(), 4) + text; }
+std::string Record(char kind, const std::string& content) {
+  return kind + Bytes(content.size(), 8) + content;
+}
+std::string Schema(const std::string& name, const std::string& encoding, const std::string& text) {
+  return Record(3, Bytes(1, 2) + Sized(name) + Sized(encoding) + Sized(text));
+}
+std::string Channel(int id, const std::string& topic, const std::string& encoding) {
+  return Record(4, Bytes(static_cast<std::uint64_t>(id), 2) + Bytes(1, 2) + Sized(topic) +
+                       Sized(encoding) + Bytes(0, 4));
+}
+std::string Message(int channel, std::uint64_t time_ns, const std::string& data) {
+  return Record(5, Bytes(static_cast<std::uint64_t>(channel), 2) + Bytes(0, 4) + Bytes(time_ns, 8) +
+                       Bytes(time_ns, 8) + data);
+}
+const std::string kMagic = "\x89MCAP0\r\n", kCdr("\0\1\0\0", 4);
+
+TEST_F(McapTrace, TheTableOfAllTimesAndNumbersHasALimit) {
+  // Each message has another number, so that the table has the square of their count.
+  std::string bag = kMagic + Schema("s", "jsonschema", "{}") + Channel(1, "/a", "json");
+  for (int i = 0; i < 10'001; ++i) {
+    bag += Message(1, static_cast<std::uint64_t>(i), "{\"n" + std::to_string(i) + "\":1}");
+  }
+  Diagnostics out;
+  EXPECT_FALSE(ReadTrace(WriteFile("wide.mcap", bag), out));
+  EXPECT_NE(out.Format().find("the times of all messages and the numbers form a table of more than "
+                              "100 million values (take a shorter part of the bag"),
+            std::string::npos)
+      << out.Format();
+}
+
+TEST_F(McapTrace, NamesHaveALimit) {
+  const std::string name(1001, 'n');
+  const std::string long_key =
+      kMagic + Schema("s", "jsonschema", "{}") + Channel(1, "/a", "json") +
+      Message(1, 0, "{\"" + std::string(1'000'000, 'k') + "\":{\"a\":1,\"b\":2}}");
+  const std::string long_topic =
+      kMagic + Schema("s", "jsonschema", "{}") + Channel(1, "/" + name, "json");
+  for (const auto& [bag, what] :
+       {std::pair(long_key, "the name of a number has more than 1000 bytes"),
+        std::pair(long_topic, "the name of a topic has more than 1000 bytes")}) {
+    Diagnostics out;
+    EXPECT_FALSE(ReadTrace(WriteFile("names.mcap", bag), out));
+    EXPECT_NE(out.Format().find(what), std::string::npos) << out.Format().substr(0, 300);
+  }
+  std::string why;
+  EXPECT_FALSE(trace::Ros2Message::Parse("a/A", "float64 " + name + "\n", why));
+  EXPECT_EQ(why, "a name of its definition has more than 1000 bytes");
+}
+
+TEST_F(McapTrace, ChannelsShareTheTextOfTheirSchema) {
+  // A copy for each channel would take 40 GB, and its parsing minutes.
+  std::string bag = kMagic + Schema("a/A", "ros2msg", "float64 x\n#" + std::string(1'000'000, 'y'));
+  const std::string one_number = kCdr + Bytes(0, 8);
+  for (int i = 1; i <= 40'000; ++i) {
+    bag += Channel(i, "/t" + std::to_string(i), "cdr");
+    if (i <= 1000) bag += Message(i, 0, one_number) + Message(i, 1'000'000, one_number);
+  }
+  Diagnostics out;
+  const auto trace = ReadTrace(WriteFile("channels.mcap", bag), out);
+  ASSERT_TRUE(trace) << out.Format();
+  EXPECT_EQ(trace->channels.size(), 1000u);
+}
+
+TEST_F(McapTrace, MessagesOfTypesWithoutFieldsEnd) {
+  // Nested lists of a type without fields have 1000^14 elements, and nested fields 10^14.
+  std::string lists = "T1 f\n", fields = lists;
+  for (int k = 1; k < 15; ++k) {
+    const std::string next = "T" + std::to_string(k + 1);
+    lists += "MSG: a/T" + std::to_string(k) + "\n" + next + "[1000] f\n";
+    fields += "MSG: a/T" + std::to_string(k) + "\n";
+    for (int j = 0; j < 10; ++j) fields += next + " f" + std::to_string(j) + "\n";
+  }
+  for (const std::string& definition : {lists, fields}) {
+    std::string why;
+    const auto type = trace::Ros2Message::Parse("a/T0", definition + "MSG: a/T15\n", why);
+    ASSERT_TRUE(type) << why;
+    EXPECT_FALSE(type->Decode(kCdr + std::string(2000, '\0'), [](const std::string&, double) {}));
+  }
+}
+
 }  // namespace
 }  // namespace taut::test
