@@ -57,6 +57,23 @@ std::string Shortened(std::string text) {
   return text.substr(0, from) + " ... " + text.substr(to);
 }
 
+/// Returns the code point of a mark of the text direction at the beginning of UTF-8 text; 0 if
+/// there is none. Such a mark shows the rest of a line reversed, so that a name looks like another
+/// one.
+unsigned DirectionMark(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  unsigned code = 0;
+  if (byte(0) == 0xd8) code = (byte(0) & 0x1f) << 6 | (byte(1) & 0x3f);
+  if (byte(0) == 0xe2) {
+    code = (byte(0) & 0x0f) << 12 | (byte(1) & 0x3f) << 6 | (byte(2) & 0x3f);
+  }
+  const bool marks = code == 0x061c || code == 0x200e || code == 0x200f ||
+                     (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return marks ? code : 0;
+}
+
 }  // namespace
 
 std::string Printable(std::string_view text) {
@@ -69,6 +86,12 @@ std::string Printable(std::string_view text) {
     const bool begins_c1 = byte == 0xc2 && i + 1 < text.size() &&
                            (static_cast<unsigned char>(text[i + 1]) & 0xe0) == 0x80;
     if (is_plain && !begins_c1) {
+      if (const unsigned mark = DirectionMark(text.substr(i)); mark != 0) {
+        out += "\\u";
+        for (int shift = 12; shift >= 0; shift -= 4) out += kDigits[mark >> shift & 15];
+        i += mark < 0x800 ? 1 : 2;  // bytes after the first
+        continue;
+      }
       out += text[i];
       continue;
     }

@@ -27,6 +27,12 @@ TEST(UntrustedText, ControlCharactersArePrintedAsNumbers) {
   EXPECT_EQ(Printable("\xc2"), "\xc2");
 }
 
+TEST(UntrustedText, MarksOfTheTextDirectionArePrintedAsNumbers) {
+  EXPECT_EQ(Printable("a\u202eb\u2066c\u061c\u200f"), "a\\u202eb\\u2066c\\u061c\\u200f");
+  const std::string others = "\u0661\u20ac\u2013\u2070 \xe2\x80";
+  EXPECT_EQ(Printable(others), others);
+}
+
 TEST(UntrustedText, NoMessageSteersATerminal) {
   Diagnostics out;
   out.Error("test.control", {"a\x1b[2J.csv", 1, 2}, "holds \x1b[31m", "use \x1b[0m");
