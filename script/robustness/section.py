@@ -3,10 +3,11 @@
 import collections
 import json
 
-from robustness import campaign, kills
+from robustness import campaign, kills, replaced
 from validation.runs import ROOT, Problem, table
 
 PAGE = ROOT / "docs/robustness.md"
+KILLING = {"kills": kills, "replaced": replaced}
 
 
 def write(name, text):
@@ -29,12 +30,13 @@ def read(path):
 
 def write_faults(folder):
     """Writes the results of script/faults."""
-    items = [item for path in sorted(folder.glob("*.json")) if path.stem != "kills" for item in read(path)]
+    items = [item for path in sorted(folder.glob("*.json")) if path.stem not in KILLING for item in read(path)]
     if not items:
         raise Problem(f"{folder} holds no results; script/faults writes them")
     write("faults", campaign.summary(items))
-    if (folder / "kills.json").exists():
-        write("kills", kills.summary(read(folder / "kills.json")))
+    for name, kind in KILLING.items():
+        if (folder / f"{name}.json").exists():
+            write(name, kind.summary(read(folder / f"{name}.json")))
 
 
 def part(name):
