@@ -1,6 +1,6 @@
 /// A USB-ISS adapter on a pseudo-terminal with six boards, whose firmware runs natively in real
-/// time. The adapter can turn hostile while motors have power. Commands of `taut robot` drive it
-/// like a real robot; no emulator is needed.
+/// time while frames arrive. The adapter can turn hostile while motors have power. Commands of
+/// `taut robot` drive it like a real robot; no emulator is needed.
 #pragma once
 
 #include <fcntl.h>
@@ -68,6 +68,15 @@ class HostileAdapter {
     attacks_ = true;
     while (!hostile_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+  /// Turns the adapter hostile as soon as this number of frames has arrived while motors have
+  /// power. Call it before the command starts.
+  void AttackAfterFramesWithPower(int frames) { frames_until_attack_ = frames; }
+  /// Whether the adapter is hostile and motors had power when it became so.
+  bool HasAttackedPower() const { return attacked_power_; }
+  /// Number of times that a busy machine delayed the adapter or the command so long that the
+  /// command may rightly report a silent adapter or unconfirmed boards.
+  int delays() const { return delays_; }
+  /// Whether a motor has power. Up to date when the command gets a reply.
   bool AnyPower() const { return any_power_; }
   /// Whether a motor has had power, even if too briefly for a test on a busy machine to see it.
   bool HadPower() const { return had_power_; }
@@ -78,6 +87,8 @@ class HostileAdapter {
 
   void Run() {
     auto ticked = Clock::now();
+    auto looked = ticked;
+    framed_ = ticked;
     std::mt19937 random(1);
     while (!ended_) {
       pollfd ready{line_, POLLIN, 0};
@@ -86,17 +97,35 @@ class HostileAdapter {
       } else {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
-      // Limits the time that boards catch up on a busy machine, so that no board times out.
+      // On a busy machine, neither a late adapter nor a late command may make a board time out:
+      // boards catch up only a few ticks, and their time stands still while no frame arrives.
       const auto now = Clock::now();
+      if (now - looked > kLateReply) ++delays_;
+      looked = now;
       ticked = std::max(ticked, now - std::chrono::milliseconds(10));
       for (; ticked < now; ticked += std::chrono::milliseconds(1)) {
+        if (ticks_left_ == 0) continue;
+        --ticks_left_;
         for (const auto& board : boards_) board->Tick();
         boards_[0]->motors[0].wound_m += 1e-3 * winds_m_per_s_;
       }
-      any_power_ = std::any_of(boards_.begin(), boards_.end(),
-                               [](const auto& board) { return board->IsPowered(); });
-      if (any_power_) had_power_ = true;
+      NotePower();
       if (line_ >= 0) Serve(random);
+    }
+  }
+  void NotePower() {
+    any_power_ = std::any_of(boards_.begin(), boards_.end(),
+                             [](const auto& board) { return board->IsPowered(); });
+    if (any_power_) had_power_ = true;
+  }
+  /// Counts a frame of the command, and the time since the one before.
+  void NoteFrame() {
+    const auto now = Clock::now();
+    if (any_power_ && now - framed_ > kLateFrame) ++delays_;
+    framed_ = now;
+    ticks_left_ = kTicksPerFrame;
+    if (any_power_ && frames_until_attack_ > 0 && --frames_until_attack_ == 0) {
+      attacked_power_ = attacks_ = true;
     }
   }
   void Serve(std::mt19937& random) {
@@ -112,8 +141,10 @@ class HostileAdapter {
     }
     std::uint8_t chunk[4096];
     const ssize_t size = read(line_, chunk, sizeof chunk);
+    if (size > 0) NoteFrame();
     if (size <= 0 || now == Hostility::kSilent || now == Hostility::kFlood) return;
     Bytes reply = ReplyTo({chunk, chunk + size});
+    NotePower();
     if (now == Hostility::kGarbage) {
       reply.resize(1 + random() % 64);
       for (auto& byte : reply) byte = static_cast<std::uint8_t>(random());
@@ -179,14 +210,22 @@ class HostileAdapter {
     return {static_cast<std::uint8_t>(acknowledged ? 0xff : 0)};
   }
 
+  /// Half of the time that a driver waits for a reply; half of the time after which boards of a
+  /// robot hold because no broadcast arrives.
+  static constexpr std::chrono::milliseconds kLateReply{20}, kLateFrame{50};
+  static constexpr int kTicksPerFrame = board::kTimeoutTicks / 2;
+
   Hostility hostility_;
   double winds_m_per_s_;
   std::string device_;
   int line_ = -1, far_end_ = -1;
   std::uint8_t mode_ = 0x40;
+  int ticks_left_ = kTicksPerFrame;  ///< Until the next frame.
+  Clock::time_point framed_;         ///< Arrival of the last frame.
   std::vector<std::unique_ptr<FakeBoard>> boards_;
   std::atomic<bool> attacks_{false}, hostile_{false}, ended_{false}, any_power_{false},
-      had_power_{false};
+      had_power_{false}, attacked_power_{false};
+  std::atomic<int> delays_{0}, frames_until_attack_{0};
   std::thread thread_;
 };
 

@@ -15,6 +15,10 @@ using Clock = std::chrono::steady_clock;
 
 /// Timeout for an end within a second, with margin for busy machines.
 constexpr double kSoon_s = 20;
+/// Number of trials of a test that counts only if the machine does not delay adapter and command.
+constexpr int kTries = 20;
+/// Frames with power before an attack: some cycles of one broadcast and two reads.
+constexpr int kFrames = 30;
 
 class HostileRobot : public CommandTest {
  protected:
@@ -30,13 +34,15 @@ class HostileRobot : public CommandTest {
                       const std::string& runtime = "runtime") {
     return End(StartRobot(adapter, std::move(words), runtime));
   }
-  /// Starts `taut robot hold`, returns once motors have had power; its output goes to separate
-  /// files.
-  pid_t Hold(const HostileAdapter& adapter, std::vector<std::string> more = {}) {
+  pid_t StartHold(const HostileAdapter& adapter, std::vector<std::string> more = {}) {
     const CommandResult reference = Robot(adapter, {"reference", "--as_model"});
     EXPECT_EQ(reference.status, 0) << reference.errors;
     more.insert(more.begin(), "hold");
-    const pid_t hold = StartRobot(adapter, more);
+    return StartRobot(adapter, more);
+  }
+  /// Starts `taut robot hold`, returns once motors have had power.
+  pid_t Hold(const HostileAdapter& adapter) {
+    const pid_t hold = StartHold(adapter);
     Await([&] { return adapter.HadPower(); });
     return hold;
   }
@@ -48,15 +54,15 @@ class HostileRobot : public CommandTest {
     }
     EXPECT_TRUE(done());
   }
+  static bool HasEnded(pid_t pid) {
+    siginfo_t ended{};
+    return waitid(P_PID, static_cast<id_t>(pid), &ended, WEXITED | WNOWAIT | WNOHANG) == 0 &&
+           ended.si_pid == pid;
+  }
   /// Waits for the end of a process, at most kSoon_s.
   CommandResult EndSoon(pid_t pid) {
-    siginfo_t ended{};
-    Await([&] {
-      ended.si_pid = 0;
-      return waitid(P_PID, static_cast<id_t>(pid), &ended, WEXITED | WNOWAIT | WNOHANG) == 0 &&
-             ended.si_pid == pid;
-    });
-    if (ended.si_pid != pid) kill(pid, SIGKILL);
+    Await([&] { return HasEnded(pid); });
+    if (!HasEnded(pid)) kill(pid, SIGKILL);
     return End(pid);
   }
   static int Count(const std::string& text, const std::string& part) {
@@ -67,37 +73,51 @@ class HostileRobot : public CommandTest {
 };
 
 TEST_F(HostileRobot, SaysOffOnceWhenAllBoardsHaveConfirmedIt) {
-  HostileAdapter adapter(Hostility::kNone);
-  const CommandResult done = EndSoon(Hold(adapter, {"--duration_s", "0.3"}));
-  EXPECT_EQ(done.status, 0) << done.errors;
-  EXPECT_EQ(Count(done.output, "Motors are off."), 1) << done.output;
-  EXPECT_EQ(Count(done.output, "confirmed by 6 of 6 boards"), 1) << done.output;
-  Await([&] { return !adapter.AnyPower(); });  // the adapter's thread updates it
+  for (int tries = 0; tries < kTries; ++tries) {
+    HostileAdapter adapter(Hostility::kNone);
+    const CommandResult done = EndSoon(StartHold(adapter, {"--duration_s", "0.3"}));
+    const int says_off = Count(done.output, "Motors are off.");
+    EXPECT_EQ(says_off, Count(done.output, "confirmed by 6 of 6 boards")) << done.output;
+    EXPECT_FALSE(says_off > 0 && adapter.AnyPower());
+    if (done.status == 0) {
+      EXPECT_EQ(says_off, 1) << done.output;
+      return;
+    }
+    EXPECT_GT(adapter.delays(), 0) << done.output << done.errors;
+  }
+  ADD_FAILURE() << "the machine delayed all of " << kTries << " trials";
 }
 
 class HostileHold : public HostileRobot, public testing::WithParamInterface<Hostility> {};
 
 TEST_P(HostileHold, EndsByItsDurationAndSaysNothingUnconfirmed) {
-  HostileAdapter adapter(GetParam());
-  const pid_t hold = Hold(adapter, {"--duration_s", "1.5"});
-  adapter.Attack();
-  const CommandResult done = EndSoon(hold);
-  EXPECT_EQ(done.status, 1) << done.errors;
-  EXPECT_EQ(Count(done.output + done.errors, "Motors are off."), 0) << done.output;
-  EXPECT_NE(done.errors.find("has not confirmed that its motors are off"), std::string::npos)
-      << done.errors;
-  EXPECT_NE(done.errors.find("holds its motors with power"), std::string::npos) << done.errors;
+  for (int tries = 0; tries < kTries; ++tries) {
+    HostileAdapter adapter(GetParam());
+    adapter.AttackAfterFramesWithPower(kFrames);
+    const CommandResult done = EndSoon(StartHold(adapter, {"--duration_s", "1.5"}));
+    if (!adapter.HasAttackedPower()) continue;  // so busy that the duration ended before
+    EXPECT_EQ(done.status, 1) << done.errors;
+    EXPECT_EQ(Count(done.output + done.errors, "Motors are off."), 0) << done.output;
+    EXPECT_NE(done.errors.find("has not confirmed that its motors are off"), std::string::npos)
+        << done.errors;
+    EXPECT_NE(done.errors.find("holds its motors with power"), std::string::npos) << done.errors;
+    return;
+  }
+  ADD_FAILURE() << "the machine delayed all of " << kTries << " trials";
 }
 
 TEST_P(HostileHold, EndsByAnInterrupt) {
   for (const int signal : {SIGINT, SIGTERM}) {
     HostileAdapter adapter(GetParam());
-    const pid_t hold = Hold(adapter);
-    adapter.Attack();
+    adapter.AttackAfterFramesWithPower(kFrames);
+    const pid_t hold = StartHold(adapter);
+    Await([&] { return adapter.HasAttackedPower() || HasEnded(hold); });
+    EXPECT_TRUE(adapter.HasAttackedPower() || adapter.delays() > 0);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     kill(hold, signal);
     const CommandResult done = EndSoon(hold);
-    EXPECT_EQ(done.status, 1) << done.errors;  // not 130: motors may have power
+    if (!adapter.HasAttackedPower()) continue;  // the machine was so busy that the hold ended
+    EXPECT_EQ(done.status, 1) << done.errors;   // not 130: motors may have power
     EXPECT_EQ(Count(done.output + done.errors, "Motors are off."), 0) << done.output;
   }
 }
@@ -175,10 +195,14 @@ TEST_F(HostileRobot, OneProgramDrivesWhateverTheRuntimeFolder) {
   EXPECT_NE(second.errors.find("process " + std::to_string(hold) + " drives this robot"),
             std::string::npos)
       << second.errors;
-  const CommandResult stop = Robot(adapter, {"estop"}, "elsewhere");
+  // If the machine delays the driving process by a second, the command stops the boards directly.
+  CommandResult stop;
+  for (int tries = 0; tries < kTries && stop.status != 0; ++tries) {
+    stop = Robot(adapter, {"estop"}, "elsewhere");
+  }
   EXPECT_EQ(stop.status, 0) << stop.errors;
-  EXPECT_NE(stop.output.find("All boards have stopped"), std::string::npos) << stop.output;
-  Await([&] { return !adapter.AnyPower(); });
+  EXPECT_NE(stop.output.find("boards have stopped"), std::string::npos) << stop.output;
+  EXPECT_FALSE(adapter.AnyPower());
   EXPECT_EQ(EndSoon(hold).status, 1);
 }
 
