@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -18,7 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns a text in the folder of a run. Empty if it is not a regular file, since a pipe or a
+/// device could block or never end, or if it is too large.
 std::string ReadText(const fs::path& path) {
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{256} << 20;
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed) || fs::file_size(path, failed) > kMostBytes || failed) {
+    return {};
+  }
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -101,7 +109,7 @@ std::unique_ptr<Recorded> Recorded::Load(const std::string& path,
 void Recorded::FindInputs() {
   const fs::path inputs = BesideTrace(path_, "inputs", ".yaml");
   std::error_code failed;
-  if (!fs::exists(inputs, failed)) {
+  if (!fs::is_regular_file(inputs, failed)) {  // a pipe could block
     notice_ = fmt::format("there is no {} in the trace's folder: bodies are shown as spheres",
                           inputs.filename().string());
     return;

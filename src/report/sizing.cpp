@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
+#include "base/input_file.h"
 #include "math/cable_law.h"
 #include "taut/run_folder.h"
 #include "taut/spec.h"
@@ -135,13 +136,23 @@ std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out
   const std::string path = (place / "trace.h5").string();
   const auto trace = ReadTraceOfRun(path, out);  // read first, since this may complete the files of
                                                  // a killed run
-  const auto experiment = LoadExperiment((place / "inputs.yaml").string(), {}, out);
+  const std::string inputs = (place / "inputs.yaml").string();
+  std::error_code failed;
+  if (std::filesystem::exists(inputs, failed) &&
+      !std::filesystem::is_regular_file(inputs, failed)) {  // a pipe could block
+    out.Error("run.inputs_not_regular", {inputs}, "the inputs of the run are not a regular file");
+    return std::nullopt;
+  }
+  const auto experiment = LoadExperiment(inputs, {}, out);
   if (!experiment || !trace) return std::nullopt;
   auto demand = DemandOf(*trace, *experiment, path, out);
   if (!demand) return std::nullopt;
-  std::ifstream summary(place / "summary.json");
+  constexpr std::size_t kMostSummaryBytes = std::size_t{256} << 20;
+  Diagnostics unread;
+  const auto summary =
+      base::ReadInputFile((place / "summary.json").string(), kMostSummaryBytes, "", unread);
   const nlohmann::json json =
-      summary ? nlohmann::json::parse(summary, nullptr, false) : nlohmann::json();
+      summary ? nlohmann::json::parse(*summary, nullptr, false) : nlohmann::json();
   demand->every_step = json.is_object() && TakeSummary(json, demand->cables);
   for (CableDemand& d : demand->cables) {
     d.stretch_m = math::CableLaw{d.stiffness_n_per_m}.Stretch(d.peak_elastic_n);

@@ -57,6 +57,8 @@ bool RemoveOld(const std::string& path, Diagnostics& out) {
 std::optional<std::string> ReadText(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{256} << 20;
+  if (fs::file_size(path, ignored) > kMostBytes) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
   return std::string(std::istreambuf_iterator<char>(file), {});
 }

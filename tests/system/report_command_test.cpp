@@ -37,6 +37,35 @@ TEST_F(ReportCommand, AReportHoldsTheRunAndTheNumbersOfItsSummary) {
   EXPECT_EQ(report["facts"]["time"], "5 s in steps of 0.001 s");
 }
 
+TEST_F(ReportCommand, PipesAndDevicesInPlaceOfTheSummaryAreNotOpened) {
+  EXPECT_EQ(Run({"run", kHang, "--duration_s", "0.1", "--out", "run"}).status, 0);
+  const std::string summary = Path("run/summary.json");
+  for (const bool pipe : {true, false}) {
+    std::filesystem::remove(summary);
+    if (pipe) {
+      ASSERT_EQ(mkfifo(summary.c_str(), 0600), 0);
+    } else {
+      std::filesystem::create_symlink("/dev/zero", summary);
+    }
+    const CommandResult report = Taut({"report", "run"}, [] {
+      setenv("TAUT_WEB", "web", 1);
+      alarm(60);
+    });
+    EXPECT_EQ(report.status, 0) << report.errors;
+    EXPECT_TRUE(DataOf(Read(Path("run/report.html")))["summary"].is_null());
+  }
+  std::filesystem::remove(Path("run/inputs.yaml"));
+  ASSERT_EQ(mkfifo(Path("run/inputs.yaml").c_str(), 0600), 0);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"report", "run"}, {"size", "run", "--catalogue", "none.yaml"}}) {
+    const CommandResult ended = Taut(words, [] {
+      setenv("TAUT_WEB", "web", 1);
+      alarm(60);
+    });
+    EXPECT_EQ(ended.status, words[0] == "report" ? 0 : 3) << ended.errors;
+  }
+}
+
 TEST_F(ReportCommand, AReportComparesTwoTraces) {
   Run({"run", kHang, "--quiet", "--out", "a"});
   Run({"run", kHang, "--quiet", "--out", "b", "--set", "mass_kg=0.6"});
