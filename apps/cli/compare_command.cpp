@@ -39,14 +39,24 @@ std::optional<TimeWindow> ParsePhase(const std::string& text) {
   return phase;
 }
 
+/// Warns of a trace whose run was killed or continues.
+std::optional<Trace> Checked(std::optional<Trace> trace, const std::string& path,
+                             Diagnostics& out) {
+  if (trace && trace->unfinished) {
+    out.Warning("trace.unfinished", {path}, "the trace is unfinished",
+                "the recorded part is compared");
+  }
+  return trace;
+}
+
 /// Reads a trace. `log`: set to true for a log that is not a trace of a simulator.
 std::optional<Trace> Load(const std::string& path, const std::string& map, bool& log,
                           Diagnostics& out) {
-  if (map.empty()) return ReadTraceOfRun(path, out);
+  if (map.empty()) return Checked(ReadTraceOfRun(path, out), path, out);
   const auto mapping = LoadMapping(map, out);
   if (!mapping) return std::nullopt;
   log = mapping->table.has_value() || path.ends_with(".mcap");
-  return ReadMapped(path, *mapping, map, out);
+  return Checked(ReadMapped(path, *mapping, map, out), path, out);
 }
 
 /// Prints the verdict and the summary of a comparison, and its tables on request.

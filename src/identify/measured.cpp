@@ -29,6 +29,10 @@ std::optional<Trace> Read(const FitExperiment& one, Diagnostics& out) {
     trace = ReadMapped(one.data_file, *mapping, one.map_file, out);
   }
   if (trace) {
+    if (trace->unfinished) {
+      out.Warning("trace.unfinished", {one.data_file}, "the trace is unfinished",
+                  "the recorded part is fitted");
+    }
     compare::MakeOrientationsContinuous(*trace);
     compare::Unwrap(*trace);
   }

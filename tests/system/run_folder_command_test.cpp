@@ -111,6 +111,10 @@ TEST_F(RunCommand, AKilledRunLeavesItsFirstRowAndNothingOfTheRunBefore) {
     EXPECT_NE(said.find("the trace is unfinished"), std::string::npos) << said;
   }
   EXPECT_NE(Read(Path("run/report.html")).find(R"("summary":null)"), std::string::npos);
+  const CommandResult compared = Taut({"compare", "run/trace.h5", "run/trace.h5", "--json"});
+  EXPECT_NE(compared.errors.find("the trace is unfinished (the recorded part is compared)"),
+            std::string::npos)
+      << compared.errors;
 }
 
 TEST_F(RunCommand, PiecesOfDifferentRunsAreBadInput) {
