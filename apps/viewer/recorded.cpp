@@ -19,8 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a text in the folder of a run. Empty if it is not a regular file, since a pipe or a
-/// device could block or never end, or if it is too large.
+/// Returns a text of a run. Empty if it is too large, or a pipe or a device, which may never end.
 std::string ReadText(const fs::path& path) {
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{256} << 20;
   std::error_code failed;
