@@ -233,7 +233,7 @@ void AddPlot(CLI::App& app, int& exit_code) {
       "  taut plot runs/push_20n --channels 'cable/outer_*/tension_n' --out push.pdf\n"
       "  taut plot runs/drop --with lab.csv --map lab.map.json --out drop.pdf --width_mm 180\n"
       "  taut plot runs/drop runs/soft --channels 'body/*/position_z_m' --from_s 1 --out z.svg\n"
-      "The phases of the first run are shaded. Needs Python 3 with matplotlib "
+      "The phases of the first run are shaded. Requires Python 3 with matplotlib "
       "(python3-matplotlib).\n"
       "Exit status: 0 written, 1 not drawn, 2 bad usage, 3 bad input.");
   command->callback([args, &exit_code] { exit_code = Plot(*args); });
