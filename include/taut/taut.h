@@ -69,6 +69,7 @@
 #include "taut/statics.h"
 #include "taut/study.h"
 #include "taut/summary.h"
+#include "taut/time_limits.h"
 #include "taut/trace.h"
 #include "taut/trace_channels.h"
 #include "taut/trace_pose.h"

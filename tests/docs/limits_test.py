@@ -78,6 +78,12 @@ CONSTANTS = {
     "text of a message": ("src/base/diagnostics.cpp", "kMostBytes"),
     "names in": ("src/base/diagnostics.cpp", "kMostNamed"),
     "linear systems": ("include/taut/world_batch.h", "max_linear_solves"),
+    "load cases and combinations": ("src/description/experiment/load_combinations.h", "kMostCases"),
+    "forces, settlements and": ("src/description/experiment/load_combinations.h", "kMostLoads"),
+    "loads of all": ("src/description/experiment/load_combinations.h", "kMostExamined"),
+    "numbers of messages": ("src/trace/mcap_trace.cpp", "kMostMcapValues"),
+    "names of topics": ("src/trace/mcap_reader.h", "kMostMcapNameBytes"),
+    "fields and elements of": ("src/trace/ros2_message.cpp", "kFreeSteps"),
     "angles in": ("src/math/elementary.h", "kMaxAngle"),
 }
 # Rows without a constant: ranges of keys, and the limit of a library

@@ -129,7 +129,7 @@ class Sequences(unittest.TestCase):
         for call, why in ((lambda: batch.rollout(good[0], 1e-3), r"\(3, 12\).*\(2, 1, 12\)"),
                           (lambda: batch.rollout(good[:1], 1e-3), r"\(1, 3, 12\).*\(2, 3, 12\)"),
                           (lambda: batch.rollout("no", 1e-3), "expected float64"),
-                          (lambda: batch.rollout(good, 0), "positive"),
+                          (lambda: batch.rollout(good, 0), "step_s: 0; expected a number from 1e-09 to 1"),
                           (lambda: batch.rollout(good, 1e-3, 0), "at least 1"),
                           (lambda: batch.rollout(good, 1e-3, 1, b"no"), "start"),
                           (lambda: batch.rollout(good, 1e-3, out=np.empty((2, 3, 3))), "out")):

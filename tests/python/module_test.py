@@ -267,7 +267,8 @@ class Batches(unittest.TestCase):
                      lambda: batch.parameter("body_mass_kg", -4),
                      lambda: batch.set_rest_length_target(np.zeros(12), world=2)):
             self.assertRaises(IndexError, call)
-        for call, why in ((lambda: batch.step(0), "positive"), (lambda: batch.step(math.nan), "positive"),
+        for call, why in ((lambda: batch.step(0), "step_s: 0; expected a number from 1e-09 to 1"),
+                          (lambda: batch.step(math.nan), "step_s: nan; expected a number"),
                           (lambda: batch.step(1e-3, -1), "0 or more"),
                           (lambda: batch.step(1e-3, 1, np.zeros((2, 11))), r"\(2, 11\).*\(2, 12\)"),
                           (lambda: batch.set_rest_length_target(np.zeros(12)), r"\(12,\).*\(2, 12\)"),

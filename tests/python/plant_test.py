@@ -56,7 +56,7 @@ class Plants(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "tension_n"):
             taut.run(experiment, plant=type("Short", (), {"observe": lambda self: {
                 "rest_length_m": plant.rest_m, "cable_length_m": plant.rest_m, "cable_rate_m_per_s": plant.rest_m,
-                "tension_n": [1.0]}, "advance": None})())
+                "tension_n": [1.0]}, "advance": lambda *_: None})())
 
     def test_a_recording_is_a_plant(self):
         experiment = push(0.3)

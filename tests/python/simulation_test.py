@@ -225,7 +225,7 @@ class OwnControllers(unittest.TestCase):
             taut.Simulation(PUSH, controllers=[Shape()])
         for wrong in (object(), 3, type("NoPeriod", (), {"act": None})()):
             self.assertRaises(TypeError, taut.Simulation, PUSH, controllers=[wrong])
-        self.assertRaises(ValueError, taut.Simulation, PUSH, controllers=[type("Zero", (), {"act": 1, "period_s": 0})()])
+        self.assertRaises(ValueError, taut.Simulation, PUSH, controllers=[type("Zero", (), {"act": lambda *_: None, "period_s": 0})()])
 
     def test_an_exception_ends_the_call_at_its_step(self):
         class Fails:

@@ -131,7 +131,7 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
 TEST_F(Limits, AnUnknownCommandIsAnsweredByThoseThatThereAre) {
   ExpectRefused({"levitate", "a.yaml"}, 2,
                 "error: there is no command \"levitate\" (one of: new, check, view, run, report, "
-                "compare, fit, analyze, learn, size, list, gait, ...)\nsee `taut --help`\n");
+                "compare, plot, fit, analyze, learn, size, list, ...)\nsee `taut --help`\n");
 }
 
 TEST_F(Limits, StrictRunsAndSearchesRefuseWarnings) {
