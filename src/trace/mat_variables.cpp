@@ -73,10 +73,14 @@ bool ReadOne(hid_t set, MatWalk& walk, MatVariable& into) {
   const double count = static_cast<double>(size[0]) * static_cast<double>(size[1]);
   walk.numbers += count;
   const TableBudget budget(kMostNumbers);
-  if (walk.numbers > kMostNumbers ||
-      !budget.Unpacks(walk.numbers * sizeof(double), walk.file_bytes)) {
-    walk.error = fmt::format("the variables have more than {:.0f} numbers{}", walk.numbers - count,
-                             budget.UnpackedMoreThan());
+  if (walk.numbers > kMostNumbers) {
+    walk.error = fmt::format("the variables up to {} have {:.0f} numbers{}", into.name,
+                             walk.numbers, budget.MoreThan());
+    return false;
+  }
+  if (!budget.Unpacks(walk.numbers * sizeof(double), walk.file_bytes)) {
+    walk.error = fmt::format("the variables up to {} unpack to {:.0f} MiB, {}", into.name,
+                             walk.numbers * sizeof(double) / (1 << 20), budget.UnpackedMoreThan());
     return false;
   }
   // HDF5 lists the dimensions of MATLAB's column-major matrices in reverse order.

@@ -2,7 +2,10 @@
 #include <hdf5.h>
 #include <zlib.h>
 
+#include <fstream>
+
 #include "tests/unit/trace/trace_fixture.h"
+#include "trace/mat_variables.h"
 
 namespace taut::test {
 namespace {
@@ -262,6 +265,36 @@ TEST_F(ForeignHdf5, FiltersThatNobodyHasAreNamed) {
       Complaint(path),
       "f.h5: error: /time_s is compressed with filter 500 \"\", which this HDF5 library does not "
       "have\n");
+}
+
+/// Writes a MATLAB file of version 7.3 with a matrix that occupies no bytes of the file.
+std::string MatrixWithoutBytes(const std::string& path, hsize_t rows, hsize_t columns) {
+  hid_t create = H5Pcreate(H5P_FILE_CREATE);
+  H5Pset_userblock(create, 512);  // contains MATLAB's header
+  hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, create, H5P_DEFAULT);
+  const hsize_t size[2] = {columns, rows}, chunk[2] = {1, 1000};
+  hid_t space = H5Screate_simple(2, size, nullptr), plan = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(plan, 2, chunk);
+  hid_t set = H5Dcreate2(file, "force", H5T_IEEE_F64LE, space, H5P_DEFAULT, plan, H5P_DEFAULT);
+  H5Dclose(set), H5Sclose(space), H5Pclose(plan), H5Fclose(file), H5Pclose(create);
+  std::fstream header(path, std::ios::in | std::ios::out | std::ios::binary);
+  header << "MATLAB 7.3 MAT-file";
+  return path;
+}
+
+TEST_F(ForeignHdf5, SizesOfMatlabVariablesHaveALimit) {
+  const auto error = [&](hsize_t rows, hsize_t columns) {
+    Diagnostics found;
+    EXPECT_FALSE(trace::ReadMatVariables(MatrixWithoutBytes(Path("f.mat"), rows, columns), found));
+    return found.items().empty() ? "" : found.items()[0].what;
+  };
+  EXPECT_NE(
+      error(6000, 6000)
+          .find("force unpack to 275 MiB, more than 256 MiB and more than 100 times its size"),
+      std::string::npos)
+      << error(6000, 6000);
+  EXPECT_NE(error(100000, 1000000).find("force have 100000000000 numbers"), std::string::npos)
+      << error(100000, 1000000);
 }
 
 }  // namespace
