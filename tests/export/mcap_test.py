@@ -286,8 +286,12 @@ def AnUnfinishedTraceIsConverted(taut, folder):
     """A trace whose writer was killed is converted, with a warning that it is unfinished."""
     experiment = ROOT / "share/experiments" / "drop_six_strut.yaml"
     going = subprocess.Popen([taut, "run", experiment, "--duration_s", "1e6", "--quiet", "--out", "run"], cwd=folder)
-    while rows_of(folder / "run" / "trace.h5") < 200:
+    # Channels are flushed one after another. Once a later flush has begun, 200 rows of all channels are in the file.
+    flushed = 0
+    while flushed < 200 or rows_of(folder / "run" / "trace.h5") == flushed:
         assert going.poll() is None
+        if flushed < 200:
+            flushed = rows_of(folder / "run" / "trace.h5")
         time.sleep(0.05)
     going.kill()
     going.wait()
