@@ -39,26 +39,6 @@ std::optional<TimeWindow> ParsePhase(const std::string& text) {
   return phase;
 }
 
-/// Warns of a trace whose run was killed or continues.
-std::optional<Trace> Checked(std::optional<Trace> trace, const std::string& path,
-                             Diagnostics& out) {
-  if (trace && trace->unfinished) {
-    out.Warning("trace.unfinished", {path}, "the trace is unfinished",
-                "the recorded part is compared");
-  }
-  return trace;
-}
-
-/// Reads a trace. `log`: set to true for a log that is not a trace of a simulator.
-std::optional<Trace> Load(const std::string& path, const std::string& map, bool& log,
-                          Diagnostics& out) {
-  if (map.empty()) return Checked(ReadTraceOfRun(path, out), path, out);
-  const auto mapping = LoadMapping(map, out);
-  if (!mapping) return std::nullopt;
-  log = mapping->table.has_value() || path.ends_with(".mcap");
-  return Checked(ReadMapped(path, *mapping, map, out), path, out);
-}
-
 /// Prints the verdict and the summary of a comparison, and its tables on request.
 void PrintComparison(const Comparison& comparison, const CompareArguments& given) {
   if (given.measured) {
@@ -93,9 +73,8 @@ void SayNextStep(const CompareArguments& given) {
 int RunCompare(CompareArguments given) {
   for (std::string* path : {&given.path_a, &given.path_b}) *path = TraceOfRun(*path);
   Diagnostics found;
-  bool ignored = false;
-  const auto a = Load(given.path_a, given.map_a, ignored, found);
-  const auto b = Load(given.path_b, given.map_b, given.measured, found);
+  const auto a = ReadTraceOrLog(given.path_a, given.map_a, "compared", found);
+  const auto b = ReadTraceOrLog(given.path_b, given.map_b, "compared", found, &given.measured);
   if (!a || !b) return Fail(found, kBadInput);
   Pass(found, false);
   const Comparison comparison = Compare(*a, *b, given.options);

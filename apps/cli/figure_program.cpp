@@ -124,7 +124,7 @@ std::optional<std::string> DrawFigure(const std::string& request, Diagnostics& o
     out.Error("figure.not_drawn", {},
               status < 0 ? fmt::format("{} was killed or did not start", python)
                          : fmt::format("{} failed with exit status {}", python, status),
-              "its message stands above");
+              "see its output above, if any");
     return std::nullopt;
   }
   const std::string where =

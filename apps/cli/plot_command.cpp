@@ -41,14 +41,6 @@ struct Drawn {
   std::string name, unit;
 };
 
-/// Reads the measurement: a trace, or a log with its mapping.
-std::optional<Trace> ReadMeasured(const PlotArguments& args, Diagnostics& out) {
-  if (args.map.empty()) return ReadTraceOfRun(args.measured, out);
-  const auto mapping = LoadMapping(args.map, out);
-  if (!mapping) return std::nullopt;
-  return ReadMapped(args.measured, *mapping, args.map, out);
-}
-
 /// Returns the channels of the first run that match the patterns, in the order of the patterns.
 std::vector<Drawn> Chosen(const PlotArguments& args, const Trace& run, Diagnostics& out) {
   std::vector<Drawn> drawn;
@@ -76,7 +68,7 @@ void CheckDrawn(const PlotArguments& args, const std::vector<Drawn>& drawn, Diag
     out.Error(
         "plot.too_many_channels", {},
         fmt::format("{} channels match; a figure shows at most {}", drawn.size(), kMostChannels),
-        "choose some with --channels, such as 'cable/outer_*/tension_n'");
+        "choose fewer with --channels, such as 'cable/outer_*/tension_n'");
   }
   const auto other =
       std::ranges::find_if(drawn, [&](const Drawn& one) { return one.unit != drawn.front().unit; });
@@ -123,7 +115,7 @@ void CheckOut(const PlotArguments& args, Diagnostics& out) {
               fmt::format("--from_s {} is not before --to_s {}", *args.from_s, *args.to_s));
   }
   if (!args.map.empty() && args.measured.empty()) {
-    out.Error("plot.map_of_nothing", {}, "--map is the mapping of a measurement",
+    out.Error("plot.map_of_nothing", {}, "--map needs a measurement",
               "name the measurement with --with");
   }
 }
@@ -133,11 +125,11 @@ int Plot(PlotArguments args) {
   CheckOut(args, found);
   for (std::string& run : args.runs) run = TraceOfRun(run);
   std::vector<std::optional<Trace>> runs;
-  for (const std::string& run : args.runs) runs.push_back(ReadTraceOfRun(run, found));
+  for (const std::string& run : args.runs) runs.push_back(ReadTraceOrLog(run, "", "drawn", found));
   std::optional<Trace> measured;
   if (!args.measured.empty()) {
     args.measured = TraceOfRun(args.measured);
-    measured = ReadMeasured(args, found);
+    measured = ReadTraceOrLog(args.measured, args.map, "drawn", found);
   }
   std::vector<Drawn> drawn;
   if (runs.front()) {
@@ -233,7 +225,7 @@ void AddPlot(CLI::App& app, int& exit_code) {
       "  taut plot runs/push_20n --channels 'cable/outer_*/tension_n' --out push.pdf\n"
       "  taut plot runs/drop --with lab.csv --map lab.map.json --out drop.pdf --width_mm 180\n"
       "  taut plot runs/drop runs/soft --channels 'body/*/position_z_m' --from_s 1 --out z.svg\n"
-      "The phases of the first run are shaded. Requires Python 3 with matplotlib "
+      "Every other phase of the first run is shaded. Requires Python 3 with matplotlib\n"
       "(python3-matplotlib).\n"
       "Exit status: 0 written, 1 not drawn, 2 bad usage, 3 bad input.");
   command->callback([args, &exit_code] { exit_code = Plot(*args); });

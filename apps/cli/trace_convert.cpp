@@ -52,10 +52,7 @@ int Convert(const ConvertArguments& args) {
   std::optional<ModelDef> robot;
   if (mcap) robot = RobotOf(path, found);
   if (!found.ok()) return Fail(found, kBadInput);
-  if (trace->unfinished) {
-    found.Warning("trace.unfinished", {path, 0, 0}, "the trace is unfinished",
-                  "the recorded part is converted");
-  }
+  WarnIfUnfinished(*trace, path, "converted", found);
   Pass(found, false);
 
   OutputIsNews();

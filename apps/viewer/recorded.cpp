@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "command.h"
 #include "run_names.h"
@@ -18,17 +15,6 @@ namespace taut::viewer {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Returns a text of a run. Empty if it is too large, or a pipe or a device, which may never end.
-std::string ReadText(const fs::path& path) {
-  constexpr std::uintmax_t kMostBytes = std::uintmax_t{256} << 20;
-  std::error_code failed;
-  if (!fs::is_regular_file(path, failed) || fs::file_size(path, failed) > kMostBytes || failed) {
-    return {};
-  }
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Returns whether a trace can belong to this experiment: all its bodies and cables are in the
 /// experiment.
@@ -121,7 +107,7 @@ void Recorded::FindInputs() {
                           inputs.filename().string());
     return;
   }
-  inputs_ = ReadText(inputs);
+  inputs_ = ReadRunText(inputs.string()).value_or("");
   nodes_ = NodeChannels(experiment_->robot.def);
   const double end_s = trace_.time_s.back();
   // The planned duration is unknown for parts of a live run after a reset (inputs_2.yaml).
@@ -129,7 +115,8 @@ void Recorded::FindInputs() {
   if (planned && end_s < experiment_->duration_s * (1 - 1e-9) - 1e-9) {
     notice_ = fmt::format("the trace ends at {:g} s of {:g} s", end_s, experiment_->duration_s);
   }
-  summary_ = Json::parse(ReadText(BesideTrace(path_, "summary", ".json")), nullptr, false);
+  summary_ =
+      Json::parse(ReadRunText(BesideTrace(path_, "summary", ".json")).value_or(""), nullptr, false);
   if (summary_.is_discarded()) summary_ = nullptr;
 }
 

@@ -45,6 +45,13 @@ std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std
 std::optional<Trace> ReadMapped(const std::string& path, const Mapping& mapping,
                                 const std::string& mapping_path, Diagnostics& out);
 
+/// Reads a trace or, with a mapping file, a log or the trace of another program. `mapping_path`: ""
+/// for a trace with taut's names. Warns of an unfinished trace; `use` completes the warning:
+/// "compared". `is_log`: set to whether the file is not a trace of a simulator.
+std::optional<Trace> ReadTraceOrLog(const std::string& path, const std::string& mapping_path,
+                                    const std::string& use, Diagnostics& out,
+                                    bool* is_log = nullptr);
+
 /// Named time span, both ends included.
 struct TimeWindow {
   std::string name;

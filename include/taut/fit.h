@@ -179,9 +179,9 @@ struct FitColumn {
   bool kink = false;
   double kink_share = 0;  ///< The disagreement relative to the slope.
   double step = 0;        ///< The larger step h, in the unit of the parameter.
-  /// Fraction of the problem's step that was used. Below 1 if the slopes for that step and for half
-  /// of it disagreed, but the slopes for the shorter step agree. Standard errors above `step` are
-  /// unreliable, because the function is nonlinear over them.
+  /// Ratio of `step` to the problem's difference step. Below 1 if the slopes for the problem's step
+  /// and for half of it disagreed, but the slopes for a shorter step agree. Standard errors above
+  /// `step` are unreliable, because the function is nonlinear over them.
   double step_share = 1;
   /// Second-order change over a step, in residuals per scale. Reveals a purely quadratic effect,
   /// which has slope 0.

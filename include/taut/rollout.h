@@ -32,7 +32,7 @@ struct RolloutResult {
 
 /// Custom measure for all lanes of a plant.
 ///
-/// Threads: one thread uses an object; several objects are used concurrently.
+/// Threads: each object is used by one thread at a time; several objects are used concurrently.
 class Score {
  public:
   virtual ~Score() = default;

@@ -87,6 +87,10 @@ std::string BesideTrace(const std::string& trace, const std::string& name, const
 /// returned unchanged.
 std::string TraceOfRun(const std::string& path);
 
+/// Returns the text of inputs.yaml or summary.json. Returns nothing, without a message, if the file
+/// is missing, larger than 256 MiB, or a pipe or a device, which may never end.
+std::optional<std::string> ReadRunText(const std::string& path);
+
 /// Reads a trace, or the trace in the folder of a run. Rejects it if inputs or summary belong to
 /// another run. A CSV trace has no id, so only inputs and summary are compared.
 std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out);

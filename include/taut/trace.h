@@ -87,6 +87,10 @@ struct Trace {
   std::optional<std::size_t> Find(const std::string& name) const;
 };
 
+/// Adds a warning if the trace is unfinished: "the recorded part is compared". `use`: "compared".
+void WarnIfUnfinished(const Trace& trace, const std::string& path, const std::string& use,
+                      Diagnostics& out);
+
 /// Reads `.h5`, `.csv`, `.csv.gz` or `.mcap`. On failure, returns nothing and adds an error. From a
 /// truncated `.h5`, `.csv` or `.mcap`, it returns the rows that are complete. It rejects a
 /// truncated

@@ -115,37 +115,33 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
   return ran;
 }
 
-/// Writes all rows of a trace.
-bool WriteRows(const Trace& trace, TraceWriter& writer) {
+/// Writes the folder of a run, as `taut run` does.
+void WriteRun(const Ran& ran, const std::string& path, Diagnostics& out) {
+  const auto folder = RunFolder::Open(path, {}, out);
+  if (!folder || !folder->Prepare(ResolvedYaml(ran.experiment), out)) return;
+  const Trace& trace = *ran.trace;
+  TraceMetadata metadata = trace.metadata;
+  metadata.emplace_back(kRunIdKey, folder->id());
+  auto file = CreateHdf5Trace(folder->Path("trace.h5"), trace.channels, metadata, out);
+  if (!file) return;
+  const auto writer = folder->BeginWith(std::move(file), {"trace.h5"});
   std::vector<double> row(trace.channels.size());
-  for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
+  bool good = true;
+  for (std::size_t i = 0; i < trace.time_s.size() && good; ++i) {
     for (std::size_t c = 0; c < row.size(); ++c) row[c] = trace.values[c][i];
-    if (!writer.Append(trace.time_s[i], row.data())) return false;
+    good = writer->Append(trace.time_s[i], row.data());
   }
-  return writer.Finish();
+  if (!writer->Finish() || !good) return out.Error("trace.not_written", {}, writer->error());
+  RunSummary summary = ran.summary;
+  summary.run = folder->id();
+  folder->Finish(SummaryJson(summary), out);
 }
 
-/// Writes the folder of a run, as `taut run` does.
 void SaveRun(const Ran& ran, const std::filesystem::path& path) {
   Diagnostics said;
   {
     const Released others;
-    const auto folder = RunFolder::Open(path.string(), {}, said);
-    if (folder && folder->Prepare(ResolvedYaml(ran.experiment), said)) {
-      TraceMetadata metadata = ran.trace->metadata;
-      metadata.emplace_back(kRunIdKey, folder->id());
-      auto file = CreateHdf5Trace(folder->Path("trace.h5"), ran.trace->channels, metadata, said);
-      if (file) {
-        const auto writer = folder->BeginWith(std::move(file), {"trace.h5"});
-        RunSummary summary = ran.summary;
-        summary.run = folder->id();
-        if (!WriteRows(*ran.trace, *writer)) {
-          said.Error("trace.not_written", {}, writer->error());
-        } else {
-          folder->Finish(SummaryJson(summary), said);
-        }
-      }
-    }
+    WriteRun(ran, path.string(), said);
   }
   if (!said.ok()) Refuse(said);
   Tell(said);

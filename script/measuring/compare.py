@@ -37,6 +37,18 @@ def program(version):
     return build / "step_counter"
 
 
+def by_valgrind(words, *options, absent=None):
+    """Returns the instructions of a command; None if its exit status is `absent`."""
+    run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *options, *map(str, words)],
+                         capture_output=True, text=True)
+    if absent is not None and run.returncode == absent:
+        return None
+    match = re.search(r"Collected : (\d+)", run.stderr)
+    if run.returncode != 0 or not match:
+        raise Problem(run.stderr.rstrip())
+    return int(match[1])
+
+
 def counter():
     """Returns a function that counts the instructions of a command."""
     def perf(words):
@@ -45,18 +57,10 @@ def counter():
         match = re.search(r"^(\d+),[^,]*,instructions", run.stderr, re.MULTILINE)
         return int(match[1]) if match else None
 
-    def valgrind(words):
-        run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *map(str, words)],
-                             capture_output=True, text=True)
-        match = re.search(r"Collected : (\d+)", run.stderr)
-        if run.returncode != 0 or not match:
-            raise Problem(run.stderr.rstrip())
-        return int(match[1])
-
     if shutil.which("perf") and perf(["true"]) is not None:
         return "perf", perf
     if shutil.which("valgrind"):
-        return "valgrind", valgrind
+        return "valgrind", by_valgrind
     raise Problem("counting instructions needs perf or valgrind (script/setup)")
 
 

@@ -3,10 +3,9 @@
 import concurrent.futures
 import json
 import os
-import re
 import shutil
-import subprocess
 
+from measuring.compare import by_valgrind
 from measuring.measure import command
 from validation.runs import ROOT, Problem, table
 
@@ -42,15 +41,11 @@ def name_of(scene):
 def instructions(program, scene):
     """Returns the instructions of a step of all worlds; None if this processor lacks the instruction set."""
     experiment, worlds, simd, steps = scene
-    run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--toggle-collect=CountedSteps",
-                          program, ROOT / f"share/experiments/{experiment}.yaml", str(worlds), simd, str(steps)],
-                         capture_output=True, text=True, check=False)
-    if run.returncode == NOT_HERE:
-        return None
-    match = re.search(r"Collected : (\d+)", run.stderr)
-    if run.returncode != 0 or not match or int(match[1]) == 0:
-        raise Problem(f"{name_of(scene)}: {run.stderr.rstrip()}")
-    return int(match[1]) / steps
+    count = by_valgrind([program, ROOT / f"share/experiments/{experiment}.yaml", worlds, simd, steps],
+                        "--toggle-collect=CountedSteps", absent=NOT_HERE)
+    if count == 0:
+        raise Problem(f"{name_of(scene)}: the function CountedSteps was not found")
+    return count and count / steps
 
 
 def counts(program, threads=None):

@@ -104,4 +104,17 @@ std::optional<Trace> ReadMapped(const std::string& path, const Mapping& mapping,
   return ApplyMapping(mapping, std::move(*trace), path, out);
 }
 
+std::optional<Trace> ReadTraceOrLog(const std::string& path, const std::string& mapping_path,
+                                    const std::string& use, Diagnostics& out, bool* is_log) {
+  std::optional<Trace> trace;
+  if (mapping_path.empty()) {
+    trace = ReadTraceOfRun(path, out);
+  } else if (const auto mapping = LoadMapping(mapping_path, out)) {
+    if (is_log != nullptr) *is_log = mapping->table.has_value() || path.ends_with(".mcap");
+    trace = ReadMapped(path, *mapping, mapping_path, out);
+  }
+  if (trace) WarnIfUnfinished(*trace, path, use, out);
+  return trace;
+}
+
 }  // namespace taut

@@ -10,8 +10,6 @@
 namespace taut {
 namespace {
 
-/// Returns a size with four digits; "-" if it is undefined.
-
 bool IsEqual(const ChannelComparison& channel) {
   return channel.rmse == 0 && channel.error.value == 0 && channel.missing_s == 0;
 }

@@ -17,17 +17,14 @@ namespace {
 constexpr std::size_t kMostPlots = 24, kMostPoints = 400;
 
 /// Returns at most kMostPoints rows of a channel in the common time.
-std::vector<std::pair<double, double>> Thinned(const Trace& trace, std::size_t channel,
-                                               const Comparison& comparison) {
-  std::vector<std::pair<double, double>> all, some;
+compare::Points Rows(const Trace& trace, std::size_t channel, const Comparison& comparison) {
+  compare::Points all;
   for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
     const double t = trace.time_s[i];
     if (t < comparison.from_s || t > comparison.to_s) continue;
     all.emplace_back(t, trace.values[channel][i]);
   }
-  const std::size_t every = std::max<std::size_t>(1, (all.size() + kMostPoints - 1) / kMostPoints);
-  for (std::size_t i = 0; i < all.size(); i += every) some.push_back(all[i]);
-  return some;
+  return compare::Thinned(all, kMostPoints);
 }
 
 /// Returns one bar per channel for its bias (filled) and its RMSE (outline).
@@ -89,7 +86,7 @@ std::string Scatter(const compare::Group& group, const Trace& a, const Trace& b,
     const auto in_a = a.Find(c->name), in_b = b.Find(c->name);
     if (!in_a || !in_b) continue;
     std::vector<double> times_s;
-    const auto of_b = Thinned(b, *in_b, comparison);
+    const auto of_b = Rows(b, *in_b, comparison);
     for (const auto& point : of_b) times_s.push_back(point.first);
     const auto of_a = compare::Interpolate(a.time_s, a.values[*in_a], gaps, times_s);
     for (std::size_t i = 0; i < of_b.size(); ++i) {
@@ -99,11 +96,9 @@ std::string Scatter(const compare::Group& group, const Trace& a, const Trace& b,
       low = std::min(low, simulated), high = std::max(high, simulated);
     }
   }
-  std::vector<std::pair<double, double>>& points = plot.series[1].points;
-  const std::size_t every = std::max<std::size_t>(1, points.size() / (4 * kMostPoints));
-  for (std::size_t i = 1; i * every < points.size(); ++i) points[i] = points[i * every];
-  points.resize(std::min(points.size(), (points.size() + every - 1) / every));
+  compare::Points& points = plot.series[1].points;
   if (points.empty()) return {};
+  points = compare::Thinned(points, 4 * kMostPoints);
   plot.series[0].points = {{low, low}, {high, high}};
   return compare::Svg(plot);
 }
@@ -119,7 +114,7 @@ std::string Curves(const compare::Group& group, const Trace& a, const Trace& b,
         {c->name + unit,
          "time [s]",
          "",
-         {{"fitted", Thinned(a, *in_a, comparison), true}, {"held", Thinned(b, *in_b, comparison)}},
+         {{"fitted", Rows(a, *in_a, comparison), true}, {"held", Rows(b, *in_b, comparison)}},
          {},
          {}});
   }

@@ -12,19 +12,6 @@ namespace {
 constexpr double kWidth = 460, kHeight = 260;
 constexpr double kLeft = 62, kRight = 12, kTop = 28, kBottom = 42;
 
-struct Axis {
-  double low = INFINITY, high = -INFINITY;
-  double from = 0, to = 1;  ///< Range of the axis on the page.
-
-  void Take(double x) { low = std::min(low, x), high = std::max(high, x); }
-  void Widen(double share) {
-    const double size = std::fabs(high);
-    const double room = high > low ? share * (high - low) : size > 1e-12 ? 0.1 * size : 1.0;
-    low -= room, high += room;
-  }
-  double At(double x) const { return from + (x - low) / (high - low) * (to - from); }
-};
-
 /// Lines of more points have no dots.
 constexpr std::size_t kMostDots = 60;
 
@@ -35,10 +22,6 @@ std::string HtmlRow(const std::vector<std::string>& cells, const char* tag) {
   }
   return out + "</tr>\n";
 }
-
-}  // namespace
-
-namespace {
 
 // Colors of the viewer's pages (web/src/style.css); blue and orange are distinct with color vision
 // deficiencies.
@@ -112,6 +95,19 @@ std::string Escaped(const std::string& text) {
     }
   }
   return out;
+}
+
+void Axis::Widen(double share) {
+  const double size = std::fabs(high);
+  const double room = high > low ? share * (high - low) : size > 1e-12 ? 0.1 * size : 1.0;
+  low -= room, high += room;
+}
+
+Points Thinned(const Points& points, std::size_t most) {
+  const std::size_t every = std::max<std::size_t>(1, (points.size() + most - 1) / most);
+  Points some;
+  for (std::size_t i = 0; i < points.size(); i += every) some.push_back(points[i]);
+  return some;
 }
 
 std::vector<double> Ticks(double low, double high) {

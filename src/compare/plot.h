@@ -1,6 +1,9 @@
 /// Plots and tables for self-contained HTML pages about measurements: of fits and of comparisons.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,10 +27,26 @@ std::string HtmlTable(const std::vector<std::vector<std::string>>& rows);
 /// Escapes < > & " as HTML entities.
 std::string Escaped(const std::string& text);
 
+using Points = std::vector<std::pair<double, double>>;
+
+/// Returns at most `most` of the points, evenly chosen, so that pages of long logs stay small.
+Points Thinned(const Points& points, std::size_t most);
+
+/// Maps values to positions on the page.
+struct Axis {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  double from = 0, to = 1;  ///< Range of the axis on the page.
+
+  void Take(double x) { low = std::min(low, x), high = std::max(high, x); }
+  void Widen(double share);  ///< Adds this share of the range at either end.
+  double At(double x) const { return from + (x - low) / (high - low) * (to - from); }
+};
+
 struct Series {
   /// CSS class of the marks: "untuned", "fitted", "held" or "measured".
   std::string style;
-  std::vector<std::pair<double, double>> points;
+  Points points;
   /// Connect the points by lines; otherwise draw dots. Lines of few points have dots, too.
   bool line = false;
 };

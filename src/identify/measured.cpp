@@ -22,17 +22,8 @@ bool Rises(const std::vector<double>& times) {
 }
 
 std::optional<Trace> Read(const FitExperiment& one, Diagnostics& out) {
-  std::optional<Trace> trace;
-  if (one.map_file.empty()) {
-    trace = ReadTraceOfRun(one.data_file, out);
-  } else if (const auto mapping = LoadMapping(one.map_file, out)) {
-    trace = ReadMapped(one.data_file, *mapping, one.map_file, out);
-  }
+  auto trace = ReadTraceOrLog(one.data_file, one.map_file, "fitted", out);
   if (trace) {
-    if (trace->unfinished) {
-      out.Warning("trace.unfinished", {one.data_file}, "the trace is unfinished",
-                  "the recorded part is fitted");
-    }
     compare::MakeOrientationsContinuous(*trace);
     compare::Unwrap(*trace);
   }

@@ -13,6 +13,7 @@
 namespace taut::identify {
 namespace {
 
+using compare::Axis;
 using compare::Escaped;
 using compare::Plot;
 
@@ -44,20 +45,10 @@ std::string Capitalized(std::string text) {
   return text;
 }
 
-double RmsOf(const std::vector<double>& residuals) {
-  double sum = 0;
-  for (const double r : residuals) sum += r * r;
-  return std::sqrt(sum / static_cast<double>(residuals.size()));
+compare::Card ErrorCard(const char* label, const FitErrors& errors) {
+  return {label, FiveDigits(errors.fitted), "rms [sd], untuned " + FiveDigits(errors.untuned), ""};
 }
 
-compare::Card ErrorCard(const char* label, const BeforeAfter& residuals) {
-  return {label, FiveDigits(RmsOf(residuals.fitted)),
-          residuals.untuned.empty() ? "rms in standard deviations"
-                                    : "rms [sd], untuned " + FiveDigits(RmsOf(residuals.untuned)),
-          ""};
-}
-
-/// Interval on the scale of a parameter.
 struct Interval {
   double low, high;
 };
@@ -79,106 +70,85 @@ Bar BarOf(const FitParameter& p, const ParameterVerdict& v) {
 
 constexpr double kNames = 230, kScale = 420, kText = 170, kRow = 34;
 
-/// Draws a bar from the limits of an interval, which end at the limits of the scale.
-std::string Rectangle(const char* style, const Interval& of, const Interval& scale, double y,
-                      double height) {
-  const auto at = [&](double x) {
-    return kNames +
-           kScale * (std::clamp(x, scale.low, scale.high) - scale.low) / (scale.high - scale.low);
-  };
-  const double from = at(of.low), to = at(of.high);
+std::string Rectangle(const char* style, double from, double to, double y, double height) {
   return fmt::format(
       R"(<rect class="{}" x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{}" rx="2"/>)", style, from,
       y - 0.5 * height, std::max(1.0, to - from), height);
 }
 
 std::string BarRow(const Bar& bar, double y) {
-  Interval scale{std::min(bar.start, bar.value), std::max(bar.start, bar.value)};
+  Axis scale;
+  scale.Take(bar.start), scale.Take(bar.value);
   for (const Interval& one : {bar.estimate, bar.prior}) {
-    if (!std::isfinite(one.low)) continue;
-    scale = {std::min(scale.low, one.low), std::max(scale.high, one.high)};
+    if (std::isfinite(one.low)) scale.Take(one.low), scale.Take(one.high);
   }
-  const double size = std::fabs(bar.value);
-  const double room = scale.high > scale.low ? 0.06 * (scale.high - scale.low)
-                      : size > 1e-12         ? 0.1 * size
-                                             : 1.0;
-  scale = {scale.low - room, scale.high + room};
-  const auto at = [&](double x) {
-    return kNames + kScale * (x - scale.low) / (scale.high - scale.low);
-  };
+  scale.Widen(0.06);
+  scale.from = kNames, scale.to = kNames + kScale;
   std::string out =
       fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="end">{}</text>)"
                   R"(<line class="axis" x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}"/>)",
-                  kNames - 12, y + 4, Escaped(bar.name), kNames, y, kNames + kScale, y);
-  if (std::isfinite(bar.prior.low)) out += Rectangle("prior", bar.prior, scale, y, 18);
-  const Interval whole =
-      std::isfinite(bar.estimate.low) ? bar.estimate : Interval{scale.low, scale.high};
-  out += Rectangle("interval", whole, scale, y, 6);
+                  scale.from - 12, y + 4, Escaped(bar.name), scale.from, y, scale.to, y);
+  if (std::isfinite(bar.prior.low)) {
+    out += Rectangle("prior", scale.At(bar.prior.low), scale.At(bar.prior.high), y, 18);
+  }
+  const bool limited = std::isfinite(bar.estimate.low);
+  out += Rectangle("interval", limited ? scale.At(bar.estimate.low) : scale.from,
+                   limited ? scale.At(bar.estimate.high) : scale.to, y, 6);
   out += fmt::format(R"(<line class="start" x1="{0:.1f}" y1="{1:.1f}" x2="{0:.1f}" y2="{2:.1f}"/>)"
                      R"(<circle class="fitted" cx="{3:.1f}" cy="{4:.1f}" r="5"/>)"
                      R"(<text x="{5:.1f}" y="{6:.1f}">{7}</text>)",
-                     at(bar.start), y - 9, y + 9, at(bar.value), y, kNames + kScale + 12, y + 4,
-                     Escaped(bar.text));
+                     scale.At(bar.start), y - 9, y + 9, scale.At(bar.value), y, scale.to + 12,
+                     y + 4, Escaped(bar.text));
   return out;
 }
-
-/// Channels with fewer data of an experiment have no plot against time, but rows in one figure.
-constexpr std::size_t kFewestOfPlot = 3;
 
 /// Data of a channel in one experiment: measured and computed values against time.
 struct ChannelPlot {
   Plot plot;
   std::vector<const FitPoint*> points;
-  std::vector<std::pair<double, double>> measured, untuned, fitted;
+  compare::Points measured, untuned, fitted;
 };
 
 /// Draws measured and computed values of a few data with the same unit on one scale.
 std::string FewData(const std::string& unit, const std::vector<const ChannelPlot*>& channels) {
   constexpr double kNamesHere = 300, kLine = 22;
-  Interval scale{INFINITY, -INFINITY};
+  Axis scale;
   std::size_t rows = 0;
-  const auto take = [&](double low, double high) {
-    scale = {std::min(scale.low, low), std::max(scale.high, high)};
-  };
   for (const ChannelPlot* channel : channels) {
     for (std::size_t i = 0; i < channel->points.size(); ++i, ++rows) {
       const FitPoint& p = *channel->points[i];
-      take(p.measured - kNormal95 * p.sd, p.measured + kNormal95 * p.sd);
-      take(channel->fitted[i].second, channel->fitted[i].second);
-      if (i < channel->untuned.size()) {
-        take(channel->untuned[i].second, channel->untuned[i].second);
-      }
+      scale.Take(p.measured - kNormal95 * p.sd), scale.Take(p.measured + kNormal95 * p.sd);
+      scale.Take(channel->fitted[i].second);
+      if (i < channel->untuned.size()) scale.Take(channel->untuned[i].second);
     }
   }
   if (!std::isfinite(scale.low) || !std::isfinite(scale.high)) return {};
-  const double room = scale.high > scale.low ? 0.04 * (scale.high - scale.low) : 1.0;
-  scale = {scale.low - room, scale.high + room};
-  const auto at = [&](double x) {
-    return kNamesHere + kScale * (x - scale.low) / (scale.high - scale.low);
-  };
+  scale.Widen(0.04);
+  scale.from = kNamesHere, scale.to = kNamesHere + kScale;
   const double bottom = kLine * static_cast<double>(rows) + 12;
-  const double width = kNamesHere + kScale + 30, height = bottom + 34;
+  const double width = scale.to + 30, height = bottom + 34;
   std::string out = fmt::format(
       R"(<svg viewBox="0 0 {0} {1}" width="{0}" height="{1}" role="img" aria-label="measured and computed values">)",
       width, height);
   for (const double t : compare::Ticks(scale.low, scale.high)) {
     out += fmt::format(R"(<line class="grid" x1="{0:.1f}" y1="6" x2="{0:.1f}" y2="{1:.1f}"/>)"
                        R"(<text x="{0:.1f}" y="{2:.1f}" text-anchor="middle">{3:.4g}</text>)",
-                       at(t), bottom, bottom + 14, t);
+                       scale.At(t), bottom, bottom + 14, t);
   }
   double y = 6 + 0.5 * kLine;
   for (const ChannelPlot* channel : channels) {
     for (std::size_t i = 0; i < channel->points.size(); ++i, y += kLine) {
       const FitPoint& p = *channel->points[i];
       const std::string where = channel->points.size() > 1 ? ", " + p.where : "";
-      out += fmt::format(
-          R"(<text x="{:.1f}" y="{:.1f}" text-anchor="end">{}</text>)"
-          R"(<line class="start" x1="{:.1f}" y1="{y:.1f}" x2="{:.1f}" y2="{y:.1f}"/>)",
-          kNamesHere - 12, y + 4, Escaped(channel->plot.title + where),
-          at(p.measured - kNormal95 * p.sd), at(p.measured + kNormal95 * p.sd), fmt::arg("y", y));
+      out +=
+          fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="end">{}</text>)"
+                      R"(<line class="start" x1="{:.1f}" y1="{y:.1f}" x2="{:.1f}" y2="{y:.1f}"/>)",
+                      kNamesHere - 12, y + 4, Escaped(channel->plot.title + where),
+                      scale.At(p.measured - kNormal95 * p.sd),
+                      scale.At(p.measured + kNormal95 * p.sd), fmt::arg("y", y));
       const auto dot = [&](const char* style, double value, double radius) {
         out += fmt::format(R"(<circle class="{}" cx="{:.1f}" cy="{:.1f}" r="{}"/>)", style,
-                           at(value), y, radius);
+                           scale.At(value), y, radius);
       };
       if (i < channel->untuned.size()) dot("untuned", channel->untuned[i].second, 4);
       dot("measured", p.measured, 4);
@@ -191,32 +161,22 @@ std::string FewData(const std::string& unit, const std::vector<const ChannelPlot
          "\n";
 }
 
-/// Returns at most about 300 of the points, so that pages of long logs stay small.
-std::vector<std::pair<double, double>> Thinned(
-    const std::vector<std::pair<double, double>>& points) {
-  constexpr std::size_t kMost = 300;
-  const std::size_t every = (points.size() + kMost - 1) / kMost;
-  std::vector<std::pair<double, double>> some;
-  for (std::size_t i = 0; i < points.size(); i += every) some.push_back(points[i]);
-  return some;
-}
-
 }  // namespace
-
-std::string FiveDigits(double x) { return std::isfinite(x) ? fmt::format("{:.5g}", x) : "-"; }
 
 std::string Headline(const Identification& fit, const FitOutcome& outcome) {
   const FitVerdict& v = outcome.verdict;
   std::vector<compare::Card> cards;
   cards.push_back({"verdict", Capitalized(WordOf(v.judgement)),
-                   ReasonOf(v.judgement, !outcome.test.fitted.empty()),
+                   ReasonOf(v.judgement, v.hold_out.has_value()),
                    v.judgement == FitJudgement::kGood ? "good" : "bad"});
   if (v.judgement == FitJudgement::kNone) return compare::Cards(cards);
   cards.push_back({"chi-square", FiveDigits(v.total.value),
                    fmt::format("{:.4g} degrees of freedom, p = {:.2g}", v.total.freedom, v.total.p),
                    ""});
-  if (!outcome.train.fitted.empty()) cards.push_back(ErrorCard("fitted data", outcome.train));
-  if (!outcome.test.fitted.empty()) cards.push_back(ErrorCard("held-out data", outcome.test));
+  if (v.train.failed.empty()) cards.push_back(ErrorCard("fitted data", v.train));
+  if (v.hold_out && v.hold_out->failed.empty()) {
+    cards.push_back(ErrorCard("held-out data", *v.hold_out));
+  }
   const auto& parameters = v.identifiability.parameters;
   const auto estimated = std::count_if(parameters.begin(), parameters.end(), [](const auto& p) {
     return p.kind == Determined::kEstimated;
@@ -277,7 +237,7 @@ std::string MeasuredPlots(const Identification& fit, const FitOutcome& outcome) 
       "measured\"></i>measured"
       "</span><span><i class=\"dot fitted\"></i>fitted</span><span><i class=\"dot untuned\"></i>"
       "untuned</span></p>\n";
-  constexpr std::size_t kMost = 24;
+  constexpr std::size_t kMost = 24, kMostPoints = 300;
   std::map<std::string, std::vector<const ChannelPlot*>> few;
   std::size_t plots = 0;
   for (ChannelPlot& channel : channels) {
@@ -286,9 +246,9 @@ std::string MeasuredPlots(const Identification& fit, const FitOutcome& outcome) 
       continue;
     }
     if (++plots > kMost) continue;
-    channel.plot.series = {{"untuned", Thinned(channel.untuned), true},
-                           {"measured", Thinned(channel.measured)},
-                           {"fitted", Thinned(channel.fitted), true}};
+    channel.plot.series = {{"untuned", compare::Thinned(channel.untuned, kMostPoints), true},
+                           {"measured", compare::Thinned(channel.measured, kMostPoints)},
+                           {"fitted", compare::Thinned(channel.fitted, kMostPoints), true}};
     out += compare::Svg(channel.plot);
   }
   if (plots > kMost) {

@@ -1,14 +1,15 @@
 /// Headline and figures of the page of a fit.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "taut/identify.h"
 
 namespace taut::identify {
 
-/// Returns a number with five digits as text; "-" if it is not finite.
-std::string FiveDigits(double x);
+/// Channels with fewer data of an experiment have no plot against time, but rows in one figure.
+inline constexpr std::size_t kFewestOfPlot = 3;
 
 /// Returns the cards with verdict, chi-square, errors and number of estimated parameters.
 std::string Headline(const Identification& fit, const FitOutcome& outcome);

@@ -150,7 +150,7 @@ std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) 
   // Few data of a channel stand in the figure of measured and computed values.
   std::erase_if(order, [&](const std::string& channel) {
     const std::vector<compare::Series>& series = plots[channel].series;
-    return series[1].points.size() + series[2].points.size() < 3;
+    return series[1].points.size() + series[2].points.size() < kFewestOfPlot;
   });
   if (order.empty()) return {};
   constexpr std::size_t kMost = 24;

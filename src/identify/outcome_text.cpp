@@ -33,6 +33,8 @@ std::string WithUnit(const std::string& name, const std::string& unit) {
   return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
 }
 
+std::string FiveDigits(double x) { return std::isfinite(x) ? fmt::format("{:.5g}", x) : "-"; }
+
 std::string ErrorText(double se) { return std::isfinite(se) ? fmt::format("{:.3g}", se) : "any"; }
 
 std::string CarriedText(const Identification& fit, const CarriedLoad& carried) {

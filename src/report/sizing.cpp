@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "base/input_file.h"
 #include "math/cable_law.h"
 #include "taut/run_folder.h"
 #include "taut/spec.h"
@@ -140,17 +139,15 @@ std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out
   std::error_code failed;
   if (std::filesystem::exists(inputs, failed) &&
       !std::filesystem::is_regular_file(inputs, failed)) {  // a pipe could block
-    out.Error("run.inputs_not_regular", {inputs}, "the inputs of the run are not a regular file");
+    out.Error("run.inputs_not_regular", {inputs},
+              "the file with the inputs of the run is not a regular file");
     return std::nullopt;
   }
   const auto experiment = LoadExperiment(inputs, {}, out);
   if (!experiment || !trace) return std::nullopt;
   auto demand = DemandOf(*trace, *experiment, path, out);
   if (!demand) return std::nullopt;
-  constexpr std::size_t kMostSummaryBytes = std::size_t{256} << 20;
-  Diagnostics unread;
-  const auto summary =
-      base::ReadInputFile((place / "summary.json").string(), kMostSummaryBytes, "", unread);
+  const auto summary = ReadRunText((place / "summary.json").string());
   const nlohmann::json json =
       summary ? nlohmann::json::parse(*summary, nullptr, false) : nlohmann::json();
   demand->every_step = json.is_object() && TakeSummary(json, demand->cables);

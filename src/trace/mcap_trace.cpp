@@ -155,10 +155,11 @@ void RefuseSize(const std::string& path, Excess excess, Diagnostics& out) {
   const char* const hint = "take a shorter part of the bag, or fewer topics";
   if (excess == Excess::kNames) {
     out.Error("mcap.long_name", {path},
-              fmt::format("the name of a number has more than {} bytes", kMostMcapNameBytes), hint);
+              fmt::format("the name of a channel has more than {} bytes", kMostMcapNameBytes),
+              hint);
   } else if (excess == Excess::kTable) {
     out.Error("mcap.too_large_table", {path},
-              "the times of all messages and the numbers form a table of more than 100 million "
+              "the table of all message times and channels has more than 100 million "
               "values",
               hint);
   } else {

@@ -8,12 +8,12 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 #include <vector>
+
+#include "base/input_file.h"
 
 namespace taut {
 namespace {
@@ -54,15 +54,6 @@ bool RemoveOld(const std::string& path, Diagnostics& out) {
   return false;
 }
 
-std::optional<std::string> ReadText(const std::string& path) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
-  constexpr std::uintmax_t kMostBytes = std::uintmax_t{256} << 20;
-  if (fs::file_size(path, ignored) > kMostBytes) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
 std::string FolderOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path().string() : ".";
 }
@@ -100,9 +91,9 @@ std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
     return pieces;
   }
   const std::string inputs = BesideTrace(path, "inputs", ".yaml");
-  if (const auto text = ReadText(inputs)) pieces.push_back({inputs, IdOfInputs(*text)});
+  if (const auto text = ReadRunText(inputs)) pieces.push_back({inputs, IdOfInputs(*text)});
   const std::string summary = BesideTrace(path, "summary", ".json");
-  if (const auto text = ReadText(summary)) pieces.push_back({summary, IdOfSummary(*text)});
+  if (const auto text = ReadRunText(summary)) pieces.push_back({summary, IdOfSummary(*text)});
   return pieces;
 }
 
@@ -116,7 +107,7 @@ std::vector<Piece> UnnamedInputs(const std::string& trace) {
   for (const fs::directory_entry& entry : fs::directory_iterator(FolderOf(inputs), ignored)) {
     const std::string other = entry.path().filename().string();
     if (!other.starts_with(name) || !other.ends_with(".part")) continue;
-    const auto text = ReadText(entry.path().string());
+    const auto text = ReadRunText(entry.path().string());
     if (text) found.push_back({entry.path().string(), IdOfInputs(*text)});
   }
   return found;
@@ -325,6 +316,12 @@ std::string TraceOfRun(const std::string& path) {
     if (fs::exists(folder / name, ignored)) return (folder / name).string();
   }
   return (folder / "trace.h5").string();
+}
+
+std::optional<std::string> ReadRunText(const std::string& path) {
+  constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+  Diagnostics unread;
+  return base::ReadInputFile(path, kMostBytes, "", unread);
 }
 
 std::optional<Trace> ReadTraceOfRun(const std::string& trace_or_folder, Diagnostics& out) {

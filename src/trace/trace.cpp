@@ -24,6 +24,12 @@ std::optional<Trace> trace::WithFiniteSpans(const std::string& path, std::option
   return trace;
 }
 
+void WarnIfUnfinished(const Trace& trace, const std::string& path, const std::string& use,
+                      Diagnostics& out) {
+  if (!trace.unfinished) return;
+  out.Warning("trace.unfinished", {path}, "the trace is unfinished", "the recorded part is " + use);
+}
+
 std::optional<std::size_t> Trace::Find(const std::string& name) const {
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (channels[i].name == name) return i;

@@ -55,7 +55,7 @@ def AllMistakesAreReportedAtOnce():
         "--map", "lab.map.json", "--from_s", "2", "--to_s", "1", "--out", "figure.eps")
     assert status == 3 and output == "", (status, output)
     for part in ("figure.eps: error: unknown figure format \".eps\" (expected .pdf, .svg or .png)",
-                 "--from_s 2 is not before --to_s 1", "--map is the mapping of a measurement", "missing.csv: error:",
+                 "--from_s 2 is not before --to_s 1", "--map needs a measurement (name the measurement with --with)", "missing.csv: error:",
                  "run/trace.csv: error: no channel matches \"cable/*/tension\"",
                  "one axis cannot show body/s/position_z_m [m] and cable/a/tension_n [N]"):
         assert part in errors, (part, errors)

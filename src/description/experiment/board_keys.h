@@ -73,11 +73,11 @@ void Keys(Io& io, Boards& b) {
      "Width of the band below `tension_limit_n` in which the duty for winding in decreases to 0.");
   io("duty_limit", b.duty_limit, Bound::kFraction, "Largest magnitude of the duty.");
   io("slack_way_m", b.slack_way_m, Bound{.least = 0.001, .most = 1}, kFixed,
-     "Length limit: winding in a longer length without tension, or with a constant load cell "
-     "reading, is a fault.");
+     "Longest length that may be wound in without tension, or with a constant load cell reading; "
+     "more is a fault.");
   io("stall_duty", b.stall_duty, Bound{.least = 0.05, .most = 1.1}, kFixed,
-     "Duty limit: a duty of at least this value for 100 ms without an encoder count is a fault "
-     "(stall).");
+     "Duty threshold of the stall detection: at least this duty for 100 ms without an encoder "
+     "count is a fault.");
   io("supply_v", b.supply_v, Bound{.least = 5, .most = 28}, kFixed,
      "Supply voltage [V] for the board's estimate of the winding temperature. The supply of the "
      "simulated motor is a key of the model.");

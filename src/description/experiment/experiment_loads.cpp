@@ -174,7 +174,7 @@ bool CheckSelectors(const std::vector<LoadCaseText>& texts, const RobotSpec& rob
                         " nodes, cables, joints and rods of the robot have a product of more "
                         "than " +
                         std::to_string(kMostExamined),
-                    "use selectors that match several parts, or several experiments");
+                    "use fewer selectors that match more elements, or several experiments");
     return false;
   }
   return true;

@@ -278,8 +278,8 @@ TEST_F(LoadCases, SelectorsThatExamineTooManyPartsAreRefused) {
   Write("trial.yaml", cases);
   EXPECT_EQ(Without("trial.yaml:", Complaints()),
             "7:11: error: the 10001 loads up to this load case and the 10000 nodes, cables, joints "
-            "and rods of the robot have a product of more than 100000000 (use selectors that match "
-            "several parts, or several experiments)\n");
+            "and rods of the robot have a product of more than 100000000 (use fewer "
+            "selectors that match more elements, or several experiments)\n");
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ TEST_F(McapTrace, TheTableOfAllTimesAndNumbersHasALimit) {
   }
   Diagnostics out;
   EXPECT_FALSE(ReadTrace(WriteFile("wide.mcap", bag), out));
-  EXPECT_NE(out.Format().find("the times of all messages and the numbers form a table of more than "
+  EXPECT_NE(out.Format().find("the table of all message times and channels has more than "
                               "100 million values (take a shorter part of the bag"),
             std::string::npos)
       << out.Format();
@@ -149,7 +149,7 @@ TEST_F(McapTrace, NamesHaveALimit) {
   const std::string long_topic =
       kMagic + Schema("s", "jsonschema", "{}") + Channel(1, "/" + name, "json");
   for (const auto& [bag, what] :
-       {std::pair(long_key, "the name of a number has more than 1000 bytes"),
+       {std::pair(long_key, "the name of a channel has more than 1000 bytes"),
         std::pair(long_topic, "the name of a topic has more than 1000 bytes")}) {
     Diagnostics out;
     EXPECT_FALSE(ReadTrace(WriteFile("names.mcap", bag), out));

@@ -19,6 +19,7 @@ const THICKEST = 0.5;
 const MOST = 0.85;
 const FLOOR_PX = 1.25;
 const MARKED_PX = 2;
+
 export class Cables implements Part {
   readonly object = new Group();
   /** Points of each cable in W, as last drawn. */
