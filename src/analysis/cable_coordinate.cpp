@@ -101,8 +101,8 @@ Eigen::MatrixXd CableCoordinate::ExactHessian(const Path& path) const {
 }
 
 // Central differences with a relative error of about 1e-10. The differences have an antisymmetric
-// part, because the axes rotate with the body; the Hessian in the chart exp(theta) has none (eq.
-// 3). Symmetrizing removes this part.
+// part, because the axes rotate with the body. The Hessian in the chart exp(theta) has no such part
+// (eq. 3); symmetrizing removes it.
 Eigen::MatrixXd CableCoordinate::DifferenceHessian(const Placement& at) const {
   constexpr double kStep = 1e-5;
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(bodies_.size());

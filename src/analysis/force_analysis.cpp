@@ -55,8 +55,8 @@ class Analysis {
     return full;
   }
 
-  /// Computes the motions that change no member length: rigid motions and mechanisms. They are the
-  /// left null space of the matrix whose motions are all scaled to lengths.
+  /// Computes the motions that change no member length: rigid motions and mechanisms. `split.left`
+  /// contains them in the coordinates of `scaled`, which are all lengths.
   void FindMotions(const Split& split, const Eigen::MatrixXd& scaled) {
     // Rigid motions in the coordinates of `scaled`, which has orthogonal columns.
     const Eigen::MatrixXd to_scaled =

@@ -15,8 +15,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Kind = HoldingUnknown::Kind;
 
-/// Returns the model without unknown forces: unknown cables have no tension, unknown bars become
-/// distance joints.
+/// Returns the model without unknown forces: cables with unknown tension get no tension, bars with
+/// unknown force become distance joints.
 ModelDef Freed(const ModelDef& def, bool known_tensions) {
   ModelDef freed = def;
   if (known_tensions) return freed;
@@ -196,13 +196,13 @@ ForceBalance::Solutions ForceBalance::Solve() const {
   all.particular = VectorXd::Zero(n);
   all.free = MatrixXd::Identity(n, n);
   if (n > 0 && columns.rows() > 0) {
-    // Not Eigen's divide-and-conquer SVD, which frees memory twice if an allocation fails, nor
-    // Jacobi's, which needs seconds for hundreds of unknowns.
+    // This decomposition replaces two SVDs of Eigen: divide and conquer frees memory twice if an
+    // allocation fails; Jacobi needs seconds for hundreds of unknowns.
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> factors;
     factors.setThreshold(kRank);
     factors.compute(columns);
     const Index rank = factors.rank();
-    // New matrices: Eigen frees memory twice if it cannot resize one that has elements.
+    // Assign new matrices: Eigen frees memory twice if resizing a filled matrix fails.
     all.particular = VectorXd(factors.solve(load));
     // The rows of Z below the rank span the null space of columns * P.
     const MatrixXd rows = factors.matrixZ().transpose().rightCols(n - rank);

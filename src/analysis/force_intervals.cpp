@@ -118,7 +118,7 @@ class Intervals {
       const analysis::QuadraticAnswer answer = Least(goal, angles_, ConeSide::kOuter);
       if (answer.outcome == QuadraticOutcome::kInfeasible) return std::nullopt;
       if (answer.outcome == QuadraticOutcome::kUnbounded) {
-        value = -kInfinity;  // also cut a ray that leaves a cone
+        value = -kInfinity;  // also add planes for a ray that leaves a cone
         if (!Cut(all_.free * answer.ray * load_, angles_)) break;
         continue;
       }

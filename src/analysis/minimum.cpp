@@ -58,7 +58,7 @@ class Augmented {
     return apart;
   }
 
-  /// Returns the residual that rounding of places leaves in the stiffest springs [N].
+  /// Returns the force error of the stiffest springs due to the rounding of positions [N].
   double Rounding() const {
     constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
     const bool held = !s_.rows.empty() || !s_.touches.empty();
@@ -162,7 +162,7 @@ class Inner {
       const Eigen::VectorXd slope = basis.transpose() * gradient;
       search_.left_n = slope.size() == 0 ? 0 : slope.cwiseAbs().maxCoeff();
       if (search_.left_n <= kFine * goal_n || (search_.left_n <= goal_n && last)) return;
-      // Converged: one more step reduces the residual to rounding.
+      // After convergence, one more step reduces the residual to the rounding error.
       last = search_.left_n <= goal_n;
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(basis.transpose() * hessian *
                                                                   basis);
@@ -234,7 +234,8 @@ void Minimise(const Structure& s, const SearchLimits& limits, Search& search) {
   // Robots that roll or slide far converge faster if reactions are updated after at most 25 linear
   // systems.
   constexpr int kLong = 25;
-  constexpr double kClosed = 1e-12;  ///< Share of the structure's size.
+  constexpr double kClosed = 1e-12;  ///< Tolerance of constraints, as a share of the structure's
+                                     ///< size.
   Augmented energy(s, search.holding);
   search.balanced = search.runs_away = false;
   const bool held = !s.rows.empty() || !s.touches.empty();
@@ -247,7 +248,8 @@ void Minimise(const Structure& s, const SearchLimits& limits, Search& search) {
     if (search.runs_away) return;
     search.apart_m = energy.Shift(search.at);
     search.largest_n = std::max({1.0, LargestForce(s, search.at), energy.LargestForce()});
-    // Steel bars under small loads cannot reach the tolerance: their forces are rounded.
+    // Steel bars under small loads cannot reach the tolerance: rounded positions change their
+    // forces.
     const double least_n = std::max(limits.tolerance * search.largest_n, energy.Rounding());
     const bool at_rest = search.left_n <= least_n;
     search.balanced = at_rest && (!held || search.apart_m <= kClosed * s.size_m);

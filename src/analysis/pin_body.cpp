@@ -61,7 +61,7 @@ class Builder {
                            all[i - 1], all[i], section});
     }
   }
-  /// Returns false if the two places are already connected.
+  /// Records a connection of two places. Returns false if they are already connected.
   bool Tie(int a, int b) { return tied_.insert({std::min(a, b), std::max(a, b)}).second; }
 
   void AddRod(const CapsuleDef& rod) {
@@ -103,8 +103,8 @@ class Builder {
     }
   }
 
-  /// Returns the place farthest from the line or plane through `spanned`. Returns nothing if it
-  /// contains all places.
+  /// Returns the place farthest from the line or plane through `spanned`. Returns nothing if all
+  /// places are on this line or plane.
   std::optional<int> Farthest(const std::vector<int>& all, const std::vector<int>& spanned,
                               double reach) const {
     const Eigen::Vector3d origin = Of(At(spanned.front()));

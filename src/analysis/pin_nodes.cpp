@@ -12,7 +12,8 @@
 namespace taut::analysis {
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // share of the structure's size
+constexpr double kSamePlace = 1e-9;  // largest distance of equal places, as a share of the
+                                     // structure's size
 constexpr double kAligned = 1e-9;
 
 double SizeOf(const ModelDef& def) {

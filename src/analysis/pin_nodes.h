@@ -11,12 +11,12 @@
 
 namespace taut::analysis {
 
-/// Points of bodies; joints merge points into one node.
+/// Points of bodies (places); joints merge places into one node.
 class PinPlaces {
  public:
   explicit PinPlaces(const ModelDef& def);
 
-  /// Returns the place of a body at this point; adds it if missing.
+  /// Returns the place of a body at this point; adds the place if it is missing.
   int At(int body, const Vec3& point_m);
   /// Merges two places into one node.
   void Join(int a, int b);

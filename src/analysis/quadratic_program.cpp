@@ -185,7 +185,7 @@ class DualActiveSet {
           to.independent ? -Slack(row) / to.z.dot(rows_.normals.col(row)) : kInfinity;
       if (first < 0 && !to.independent) {
         if (!Contradicts(row, to.r)) {
-          implied_[static_cast<std::size_t>(row)] = true;  // the violation is rounding
+          implied_[static_cast<std::size_t>(row)] = true;  // the violation is a rounding error
           return true;
         }
         Refute(row, 1.0, to.r);

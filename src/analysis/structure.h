@@ -90,7 +90,7 @@ class Structure {
   void AddLoads(const LoadCaseSpec& load_case);
   void AddTouches();
   void Measure();
-  /// Records that something acts on a body at this point.
+  /// Records that a force acts on a body at this point.
   void Acts(const Anchor& anchor);
   /// Records that rotations of a direction fixed in the body are resisted. A zero direction stands
   /// for all rotations.
@@ -104,7 +104,7 @@ class Structure {
   std::vector<Eigen::MatrixXd> free_;      ///< Free rotations in the described pose.
 };
 
-/// Returns the parts of a model that statics ignores, as one line per kind.
+/// Returns the parts of a model that statics ignores, one line per kind of part.
 std::vector<std::string> WhatIsLeftOut(const ModelDef& def);
 
 }  // namespace taut::analysis

@@ -96,7 +96,8 @@ class Words {
       line = " through " + Text(*held, s_.size_m);
     } else {
       const Eigen::VectorXd share = turns.completeOrthogonalDecomposition().solve(Of(axis));
-      // Slide per radian. The rotational part of a twist contains the factor `size_m`.
+      // Translation per radian of rotation. The rotational part of a twist contains the factor
+      // `size_m`.
       const Vec3 slide = s_.size_m * To(twists_.topRows(3) * share);
       const double pitch = Dot(axis, slide);
       line = " through " + Text(component_.middle_m + Cross(axis, slide), s_.size_m);
@@ -114,7 +115,7 @@ class Words {
   }
 
   /// Returns a fixed point of the component about which it can rotate freely along `axis`; null if
-  /// none.
+  /// there is no such point.
   const Vec3* HeldPointOn(const Vec3& axis) const {
     for (const auto* points : {&component_.held_points_m, &component_.joints_m}) {
       for (const Vec3& held : *points) {

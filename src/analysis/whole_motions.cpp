@@ -214,8 +214,8 @@ FreeMotions FreeMotionsOf(const ModelDef& def, const Structure& s, const Eigen::
   const double most = (unheld.transpose() * stiffness * unheld).cwiseAbs().maxCoeff();
   // Without stiffness, `most` is the rounding error of the reactions.
   const bool resists = most > 1e-12 * stiffness.cwiseAbs().maxCoeff();
-  // Only motions that the joints permit: `rigid` lacks the spins of rods, and a spin has a
-  // stiffness against motions that would separate a joint, since its rows turn with a body.
+  // Exclude motions that the joints do not permit: `rigid` lacks the spins of rods. A spin would
+  // show a stiffness against such motions, because the rows of a joint rotate with a body.
   Eigen::MatrixXd resisted(held.cols() + s.motions(), rigid.cols());
   resisted << held.transpose() * rigid,
       (resists ? 1 / most : 0.0) * (unheld * (unheld.transpose() * stiffness * rigid));
