@@ -37,14 +37,14 @@ LoadCaseSpec CaseOf(const ExperimentSpec& experiment, const std::string& name, D
   return {};
 }
 
-/// Computes the analysis without the GIL, which it releases.
+/// Releases the GIL and computes the analysis.
 void Solve(const ExperimentSpec& experiment, Analysis& found) {
   const Released others;
   found.forces = AnalyseForces(experiment.robot.def);
   found.at = FindEquilibrium(experiment.robot.def, found.loads);
   found.there = RobotAt(experiment.robot, found.at.pose);
   LoadCaseSpec there = found.loads;
-  there.cables.clear();  // already contained in the pose
+  there.cables.clear();  // the equilibrium pose already contains the changes of cables
   found.tangent = FindTangent(found.there.def, there);
   if (!found.at.found) return;
   found.modes = FindModes(found.there.def, there);
@@ -92,7 +92,7 @@ py::list MembersOf(const Analysis& a) {
   return members;
 }
 
-/// Returns an array (motions, bodies, 3) of the member `of` of each motion.
+/// Returns an array (motions, bodies, 3) with the data member `of` of each motion.
 Rows<double> MotionsOf(const std::vector<Mode>& modes, std::size_t bodies,
                        std::vector<Vec3> Mode::*of) {
   Rows<double> a(
@@ -104,7 +104,7 @@ Rows<double> MotionsOf(const std::vector<Mode>& modes, std::size_t bodies,
   return a;
 }
 
-/// Returns an array (states, members) of the member `of` of each state of self-stress.
+/// Returns an array (states, members) with the data member `of` of each state of self-stress.
 Rows<double> StatesOf(const ForceAnalysis& forces, std::vector<double> SelfStress::*of) {
   Rows<double> a({static_cast<py::ssize_t>(forces.self_stress.size()),
                   static_cast<py::ssize_t>(forces.members.size())});

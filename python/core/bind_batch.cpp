@@ -26,7 +26,7 @@ const std::pair<const char*, Parameter> kParameters[] = {
     {"gravity_y_m_per_s2", Parameter::kGravityY},
     {"gravity_z_m_per_s2", Parameter::kGravityZ}};
 
-/// Returns the parameter of a name, and a valid index; raises ValueError or IndexError otherwise.
+/// Returns the parameter with this name and its index; raises ValueError or IndexError.
 std::pair<Parameter, int> ParameterOf(const Worlds& worlds, const std::string& name,
                                       py::ssize_t index) {
   std::string all;

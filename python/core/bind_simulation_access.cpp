@@ -7,7 +7,8 @@ namespace {
 
 using S = SharedSimulation;
 
-/// Returns the docstring of a reading of all elements of a `kind`, or of one. `width`: ", 3".
+/// Returns the docstring of a method that reads all elements of a `kind`, or one element. `width`:
+/// further text of the array's shape, such as ", 3".
 std::string Words(const char* what, const std::string& kind, const std::string& width) {
   return fmt::format(
       "Returns {0}: float64, shape (worlds, {1}{2}); for one `{4}`, by name or index, shape "

@@ -45,7 +45,7 @@ std::shared_ptr<ExperimentSpec> ExperimentOf(const Fitted& f, py::ssize_t number
   return std::make_shared<ExperimentSpec>(std::move(*experiment));
 }
 
-/// Reports names that no parameter has.
+/// Reports names in `profiles` that are not parameters of the fit.
 void CheckProfiles(const Identification& fit, const std::vector<std::string>& profiles,
                    Diagnostics& said) {
   const std::vector<std::string> names = NamesOf(fit.train().parameters);

@@ -15,7 +15,8 @@ namespace {
 constexpr std::chrono::seconds kLongestWork{10}, kLongestCall{1};
 
 std::atomic<int> computing{0}, calling{0};
-std::atomic<std::thread::id> ends_it;  ///< The thread that ends the program; before, no thread.
+std::atomic<std::thread::id> ends_it;  ///< Thread that ends the program; no thread before the
+                                       ///< program ends.
 
 }  // namespace
 

@@ -46,7 +46,7 @@ void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& wor
         if (look) look();
       } catch (const abi::__forced_unwind&) {  // end of the thread, not an exception
         EndOfProgram::Sleep();
-      } catch (...) {  // whatever it is, the worker must end before this function does
+      } catch (...) {  // the worker must end before this function returns, whatever the exception
         raised = std::current_exception();
         stop = true;
       }

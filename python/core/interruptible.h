@@ -8,8 +8,8 @@ namespace taut::python {
 
 /// Runs `work` on a separate thread while other Python threads run; this thread checks for Ctrl-C
 /// and calls `look`, with the GIL, a few times per second. If either raises, `stop` becomes true:
-/// `work` must return, and the exception is raised after it has. `work` must not use Python
-/// objects. The GIL must be held.
+/// `work` must return; afterwards the exception is raised. `work` must not use Python objects. The
+/// GIL must be held.
 void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& work,
                    const std::function<void()>& look = {});
 

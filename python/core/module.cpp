@@ -22,7 +22,7 @@ void KeepBases(PyTypeObject* type) {
   try {
     py::detail::all_type_info(type);
   } catch (...) {
-    py::detail::get_internals().registered_types_py.erase(type);  // incomplete
+    py::detail::get_internals().registered_types_py.erase(type);  // the list of bases is incomplete
     throw;
   }
 }
@@ -73,7 +73,7 @@ void Define(py::module_& module) {
 
 }  // namespace
 
-/// As PYBIND11_MODULE, whose result is ImportError whatever the exception.
+/// Replaces PYBIND11_MODULE, which turns every exception into an ImportError.
 // NOLINTNEXTLINE(bugprone-reserved-identifier): the interpreter defines the name
 extern "C" PYBIND11_EXPORT PyObject* PyInit__core() {
   PYBIND11_CHECK_PYTHON_VERSION

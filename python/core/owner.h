@@ -45,7 +45,7 @@ class Owner {
     return Locked(f);
   }
 
-  /// Same for an f that only reads, which is also allowed in callbacks and signal handlers.
+  /// Calls f for reading only, which is also allowed in callbacks and signal handlers.
   template <class F>
   auto Look(F f) {
     CheckProcess();

@@ -54,7 +54,7 @@ Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
 class PythonPlant : public Plant {
  public:
   /// Returns the plant of an object with `observe()` and `advance(step_s, time_s, commands)`, for
-  /// the cables of a robot. The object must outlive it.
+  /// the cables of a robot. The object must outlive the plant.
   static std::unique_ptr<PythonPlant> Of(const py::object& plant, const RobotSpec& robot,
                                          std::shared_ptr<Callbacks> callbacks);
 };

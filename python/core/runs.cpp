@@ -42,16 +42,17 @@ using SharedTrace = std::shared_ptr<Trace>;
 struct Ran {
   SharedTrace trace;
   RunSummary summary;
-  ExperimentSpec experiment;  ///< As it was run; the caller's may change later.
+  ExperimentSpec experiment;  ///< Copy of the experiment that was run: the caller may change the
+                              ///< original.
 };
 
-/// Recording as a plant.
+/// Recording that serves as a plant.
 class Recorded {
  public:
   explicit Recorded(SharedTrace trace) : trace_(std::move(trace)) {}
 
-  /// Returns a plant of the experiment's robot; raises InputError if the trace has none of its
-  /// cables. The recording and the experiment must outlive it.
+  /// Returns a plant of the experiment's robot; raises InputError if the trace has none of the
+  /// robot's cables. The recording and the experiment must outlive the plant.
   std::unique_ptr<Plant> PlantFor(const ExperimentSpec& experiment) const {
     Diagnostics said;
     auto plant = ReplayOf(*trace_, experiment.robot, said);

@@ -85,8 +85,8 @@ double StepLength(double step_s);
 /// Returns `given`; raises TypeError, which contains `what`, unless it is None or callable.
 py::object CallableOrNone(const py::object& given, const std::string& what);
 
-/// Returns a bool of Python or NumPy; raises TypeError, which contains `what`, for other values,
-/// whose truth is rarely meant: "no" and 0.5 are true.
+/// Returns a bool of Python or NumPy; raises TypeError, which contains `what`, for other values.
+/// Their truth value is rarely intended: "no" and 0.5 count as true.
 bool Flag(const py::handle& given, const std::string& what);
 
 /// Returns a real number; raises TypeError, which contains `what` and `expected`, for other values
@@ -116,7 +116,7 @@ std::string ShapeText(const std::vector<py::ssize_t>& shape);
 /// `what`: the argument's name.
 Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what);
 
-/// Same, for finite numbers; the ValueError contains the first number that is not finite.
+/// Same as `Shaped` for finite numbers; the ValueError contains the first other number.
 Array Finite(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what);
 
 /// Raises ValueError, with the actual and the expected properties, unless `given` is a contiguous

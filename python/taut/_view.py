@@ -17,7 +17,7 @@ Source = Union[str, "os.PathLike[str]", Run]
 
 
 def _command() -> list[str]:
-    """Returns the words that start the command `taut` of this module's version."""
+    """Returns the start of the command line that runs `taut` of this module's version."""
     if hasattr(_core, "main"):  # a wheel contains the command
         return [sys.executable, "-m", "taut"]
     package = pathlib.Path(_core.__file__).resolve().parent
@@ -44,11 +44,11 @@ class View:
     """Page of a run. A notebook shows it as the output of a cell; `show()` opens it in a browser."""
 
     def __init__(self, page: str, height_px: int) -> None:
-        self.html = page  # of the page, one file without references to other files
+        self.html = page  # text of the page: one file without references to other files
         self.height_px = height_px
 
     def _repr_html_(self) -> str:
-        # Letters beyond ASCII as numbers, whatever the encoding of the notebook's page is
+        # Non-ASCII letters become numeric references, because the encoding of the notebook's page is unknown.
         escaped = html.escape(self.html).encode("ascii", "xmlcharrefreplace").decode()
         return (f'<iframe srcdoc="{escaped}" title="taut: run" allowfullscreen '
                 f'style="width:100%;height:{self.height_px}px;border:0"></iframe>')

@@ -73,7 +73,7 @@ def _seed(seed, worlds=1):
 
 
 def _flag(value, name):
-    """Returns a bool; raises TypeError for other values, whose truth is rarely meant."""
+    """Returns a bool; raises TypeError for other values, because their truth value is rarely intended."""
     if not isinstance(value, (bool, _np.bool_)):
         raise TypeError(f"{name}: {value!r}; expected True or False")
     return bool(value)
@@ -255,7 +255,7 @@ class VectorEnv(_VectorBase):
 
 
 class Env(_EnvBase):
-    """One world, as a gymnasium.Env. For training use `make_vec`: it is many times as fast."""
+    """One world, as a gymnasium.Env. For training use `make_vec`, which is many times as fast."""
 
     metadata: dict = {"render_modes": []}
     render_mode = None

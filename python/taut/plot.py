@@ -29,7 +29,7 @@ NO_MATPLOTLIB = 4   # exit status of `main`
 
 
 def _read(run):
-    """Returns a trace: of a path, a folder, a `Run`, or the trace itself."""
+    """Returns the trace of a path, a folder or a `Run`; returns a trace unchanged."""
     if isinstance(run, (str, os.PathLike)):
         from taut import read_trace
         return read_trace(os.fspath(run))
@@ -201,7 +201,7 @@ def _write(out, suffix, traces, measured, units, layout, labels, phases, span, w
 
 
 class _SentTrace:
-    """The drawn channels of a trace, as `taut plot` sends them. null: no number."""
+    """The drawn channels of a trace, as `taut plot` sends them. null: missing value."""
 
     def __init__(self, sent):
         self.time_s = sent["time_s"]
