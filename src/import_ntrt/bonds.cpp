@@ -151,7 +151,7 @@ void BondNodesAndEdges(const Reading& in, int parent, int first, int second,
                        const std::string& tags, const Value& lines) {
   const auto& items = ListOf(&lines, "a node_edge bond", in.out);
   if (items.size() < 3) {
-    in.out.Error("ntrt.few_bonds", lines.at, "a node_edge bond needs at least three lines");
+    in.out.Error("ntrt.few_bonds", lines.at, "a node_edge bond needs at least three entries");
     return;
   }
   std::vector<NodeOnEdge> bonds;

@@ -160,9 +160,8 @@ class Grouper {
                    "cables of \"" + builder.search[0] + "\" start with a rest length of " +
                        NumberText(shortest_[b]) + ", below min_rest_length, which is " +
                        NumberText(builder.is.min_rest_length) +
-                       ": in NTRT they jump to it at the first command; the import uses the "
-                       "initial rest length "
-                       "as their minimum");
+                       ": in NTRT the cables jump to min_rest_length at the first command; the "
+                       "import uses the initial rest length as their minimum");
     }
   }
   SourceRef PlaceOfBuilder(const Builder& builder) const {

@@ -187,14 +187,15 @@ class ActuatorReader {
     const bool lags = s.Lags();
     if (!lags && s.dyntype != "none") {
       Refuse("mjcf.actuator_law", e,
-             "its dyntype is " + s.dyntype + " (expected none, filter or filterexact)");
+             "the actuator's dyntype is " + s.dyntype + " (expected none, filter or filterexact)");
     }
     if (lags) actuator.lag_s = s.lag_s, actuator.state = scene_.states++;
     if (s.gaintype != "fixed")
-      Refuse("mjcf.actuator_law", e, "its gaintype is " + s.gaintype + " (expected fixed)");
+      Refuse("mjcf.actuator_law", e,
+             "the actuator's gaintype is " + s.gaintype + " (expected fixed)");
     if (s.biastype != "none" && s.biastype != "affine") {
       Refuse("mjcf.actuator_law", e,
-             "its biastype is " + s.biastype + " (expected none or affine)");
+             "the actuator's biastype is " + s.biastype + " (expected none or affine)");
     }
     const bool affine = s.biastype == "affine";
     if (affine && s.bias[2] > 0 && s.gain == -s.bias[1]) {
@@ -248,7 +249,7 @@ class ActuatorReader {
                    "leave out one of them");
     } else if (!range) {
       layers.Error("mjcf.inheritrange", "inheritrange",
-                   "inheritrange is given, but its tendon has no range");
+                   "inheritrange is given, but the actuator's tendon has no range");
     } else if (layers.Text("ctrllimited", "auto") != "false") {
       const double middle = 0.5 * (range->first + range->second);
       const double radius = 0.5 * (range->second - range->first) * s.inherited_range;
@@ -271,7 +272,7 @@ class ActuatorReader {
     const std::vector<int>& off = scene_.disabled_groups;
     if (std::find(off.begin(), off.end(), layers.Whole("group", 0)) != off.end()) {
       Refuse("mjcf.disabled_group", layers.element(),
-             "its group is disabled by actuatorgroupdisable",
+             "the actuator's group is disabled by actuatorgroupdisable",
              "remove the actuator, or its group from actuatorgroupdisable");
     }
   }

@@ -95,7 +95,7 @@ TEST_F(NtrtYaml, BondsAndSubstructuresAreChecked) {
       "or node_edge, such as t1/t2/node_node)\n"
       "s.yaml:9:5: error: a bond must join at least two substructures (such as t1/t2/node_node)\n"
       "s.yaml:10:5: error: there is no substructure \"x\"\n"
-      "s.yaml:11:20: error: a node_edge bond needs at least three lines\n"
+      "s.yaml:11:20: error: a node_edge bond needs at least three entries\n"
       "s.yaml:12:31: error: a node_edge bond must join a node and an edge (such as [top1, "
       "bottom1/bottom2])\n"
       "s.yaml:12:43: error: there is no node \"e\" (did you mean \"a\"?)\n"

@@ -59,7 +59,7 @@ void Check(const MapReader& map, DragText& drag) {
   const Vec3& v = drag.velocity_m_per_s;
   if (v.x == 0.0 && v.y == 0.0 && v.z == 0.0) {
     map.Error("event.no_velocity", "velocity_m_per_s", "drag.velocity_m_per_s must not be zero",
-              "the force is measured along it");
+              "the force is measured along the velocity");
   }
   if (drag.from_s >= drag.to_s) {
     map.Error(

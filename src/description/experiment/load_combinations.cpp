@@ -99,7 +99,7 @@ void LineLoads::Span(const Point& from, const Point& to, const std::string& memb
     if (!node) {
       scope_.out.Error("load_case.end_without_node", load_->members.value->at,
                        "line_loads.members: \"" + member + "\" has no node at its end",
-                       "add a node to the part there");
+                       "add a node to the part at this end");
       return;
     }
     Add(*node, half_m * load_->force_n_per_m);

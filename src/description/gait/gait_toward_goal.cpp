@@ -75,7 +75,7 @@ void Resolve(const TowardGoalGait& gait, const RobotSpec& robot, ResolvedGait& r
   const double radius_m = std::sqrt(square_m2 / count);
   if (!(radius_m > 0)) {
     out.Error("gait.cables_in_one_place", gait.at,
-              "toward_goal: the midpoints of all its cables are at the same position",
+              "toward_goal: all selected cables have the same midpoint",
               "select cables on all sides of the robot");
     return;
   }

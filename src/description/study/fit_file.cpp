@@ -66,7 +66,7 @@ void ReadExperiments(const std::vector<FitExperimentText>& texts, const Override
     one.forward = text.forward;
     if (!one.name.empty() && !names.emplace(one.name, text.name_at).second) {
       scope.out.Error("fit.duplicate_experiment", text.name_at,
-                      "experiments: two are called " + one.name);
+                      "experiments: two entries are called " + one.name);
     }
     known.push_back(LoadItsExperiment(text, of_user, scope, one));
     one.data_file = FindFile(text.data.value, "experiments.data", scope).value_or("");
@@ -99,7 +99,7 @@ FitSpec ReadFit(const Value& root, const OverrideSet& overrides, const Scope& sc
     for (const FitExperiment& one : fit.experiments) any |= one.train;
     if (!any) {
       scope.out.Error("fit.no_experiments", list->at,
-                      "experiments: none is used for the estimation",
+                      "experiments: no entry is used for the estimation",
                       "write `use: train` for at least one, or leave out `use`");
     }
   }

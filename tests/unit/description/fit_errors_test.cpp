@@ -133,9 +133,10 @@ TEST_F(FitFile, WhatIsTrainedOnJudgesNothing) {
 }
 
 TEST_F(FitFile, NeedsSomethingToBeFoundFrom) {
-  EXPECT_EQ(Wrong("data: a.csv}", "data: a.csv, use: test}"),
-            "5: experiments: none is used for the estimation (write `use: train` for at least one, "
-            "or leave out `use`)\n");
+  EXPECT_EQ(
+      Wrong("data: a.csv}", "data: a.csv, use: test}"),
+      "5: experiments: no entry is used for the estimation (write `use: train` for at least one, "
+      "or leave out `use`)\n");
 }
 
 TEST_F(FitFile, AStandardDeviationOfZeroIsNone) {

@@ -135,8 +135,8 @@ TEST_F(TowardGoalGaits, WhatIsWrongIsAnswered) {
       "g.yaml:6:3: error: toward_goal: the 2 struts of pair do not have three independent "
       "directions (the rotation of the robot is computed from bodies that are a single rod)\n");
   EXPECT_EQ(PlayedComplaints(Changed("cables: driven", "cables: one"), kWorldGoal),
-            "g.yaml:6:3: error: toward_goal: the midpoints of all its cables are at the same "
-            "position (select cables on all sides of the robot)\n");
+            "g.yaml:6:3: error: toward_goal: all selected cables have the same "
+            "midpoint (select cables on all sides of the robot)\n");
   EXPECT_EQ(PlayedComplaints(Changed("beat_hz: 0.5", "beat_hz: -1"), kWorldGoal),
             "g.yaml:18:12: error: toward_goal.beat_hz must not be negative, got -1\n");
   EXPECT_EQ(PlayedComplaints(Changed("up3_m: 0.08", "up4_m: 0.08"), kWorldGoal)
