@@ -110,7 +110,7 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
 }
 
 /// Reports an error for load cases that act along a motion that the supports allow, and a note for
-/// each other motion that they allow.
+/// each other motion that the supports allow.
 bool CheckSupportsOf(const std::string& file, const ModelDef& def,
                      const std::vector<LoadCaseSpec>& cases, std::vector<std::string>& notes,
                      Diagnostics& out) {
@@ -199,7 +199,7 @@ int Analyze(const AnalyzeArguments& args) {
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
   ExperimentSpec& experiment = loaded->experiment;
   if (args.linear) {
-    // A model that nothing holds is analyzed without weight, as in statics.
+    // A model without connections to the world is analyzed without weight, as in statics.
     if (loaded->model && !IsHeld(experiment.robot.def)) {
       experiment.robot.def.gravity_m_per_s2 = {};
     }
@@ -231,9 +231,10 @@ int Analyze(const AnalyzeArguments& args) {
 
 void AddInverse(CLI::App& analyze, AnalyzeArguments& args) {
   InverseArguments& inverse = args.inverse;
-  auto* const backwards = analyze.add_flag("--inverse", args.backwards,
-                                           "Inverse statics: tensions of least cost that hold the "
-                                           "described pose, and their rest lengths");
+  auto* const backwards =
+      analyze.add_flag("--inverse", args.backwards,
+                       "Inverse statics: cable tensions of least cost that hold "
+                       "the described pose, with the rest lengths");
   backwards->excludes(analyze.get_option("--modes"));
   AddChoice(
       analyze, "--minimise", inverse.minimise, kCosts,

@@ -33,7 +33,7 @@ MemberForces Forces(const ModelDef& def, const LoadCaseSpec& loads, const Equili
   return {at.cable_tension_n, at.bar_force_n, StrutForces(weighed, forces)};
 }
 
-/// Returns the forces of the world on the cables that end in it, one force per point.
+/// Returns the forces of the world on cables that end at points of the world, one force per point.
 std::vector<CaseResult::End> Ends(const ModelDef& def, const Equilibrium& at) {
   const auto same = [](const Vec3& a, const Vec3& b) {
     return std::fabs(a.x - b.x) + std::fabs(a.y - b.y) + std::fabs(a.z - b.z) < 1e-9;
@@ -62,7 +62,7 @@ std::vector<CaseResult::End> Ends(const ModelDef& def, const Equilibrium& at) {
 /// if all forces are determined.
 std::optional<CaseResult::Open> OpenForces(ModelDef def, const LoadCaseSpec& loads) {
   LoadCaseSpec there = loads;
-  there.cables.clear();  // already contained in the pose
+  there.cables.clear();  // the pose already contains the changes of cables
   for (const LoadCaseSpec::Settlement& settled : loads.settlements) {
     JointDef& joint = def.joints[static_cast<std::size_t>(settled.joint)];
     Vec3& in_world = IsFixed(def, joint.body_a) ? joint.from_m : joint.to_m;
@@ -120,7 +120,7 @@ std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCa
     result.open = OpenForces(result.def, loads);
     result.move = LargestMove(def, result.at.pose);
     LoadCaseSpec there = loads;
-    there.cables.clear();  // already contained in the pose
+    there.cables.clear();  // the pose already contains the changes of cables
     result.least_stiffness_n_per_m = LeastStiffness(result.def, there);
     if (with_modes) result.modes = FindModes(result.def, there);
   }

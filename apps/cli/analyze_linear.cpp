@@ -65,8 +65,8 @@ bool Respond(const LinearArguments& args, double to_hz, LinearResult& result, Di
   return out.ok();
 }
 
-/// Returns the suggested next command: after the system a response, after a response its complete
-/// table.
+/// Returns the suggested next command: a response after the linear system, or the complete table
+/// after a response.
 std::vector<std::string> NextOf(const LinearResult& result, const LinearArguments& args) {
   std::vector<std::string> next = args.again;
   const StateSpace& system = result.system;

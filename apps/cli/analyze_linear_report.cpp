@@ -53,7 +53,7 @@ std::string Signals(const StateSpace& system) {
 }
 
 /// Returns whether a mode neither decays nor grows, such as a translation of a free robot.
-/// Round-off splits z = 1, 1 into pairs that look like oscillations.
+/// Round-off splits the double eigenvalue z = 1 into pairs that look like oscillations.
 bool IsNeutral(const LinearMode& mode) { return std::abs(mode.z - 1.0) < 1e-6; }
 /// Returns whether a mode oscillates visibly, with a damping ratio below 0.99.
 bool Swings(const LinearMode& mode) { return mode.frequency_hz > 0 && mode.damping < 0.99; }

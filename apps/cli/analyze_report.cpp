@@ -93,7 +93,7 @@ std::string OpenForces(const CaseResult& result) {
   }
   for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
     const std::string& name = result.def.joints[j].name;
-    if (IsBar(result.def.joints[j])) continue;  // determined by its rest length
+    if (IsBar(result.def.joints[j])) continue;  // the bar's rest length determines its force
     add(name + ", x", open.forces.joint_x[j]);
     add(name + ", y", open.forces.joint_y[j]);
     add(name + ", z", open.forces.joint_z[j]);

@@ -19,7 +19,7 @@ struct CaseResult {
   ModelDef def;  ///< Model in the equilibrium pose.
   std::vector<MemberLoad> members;
   std::vector<Reaction> anchors;
-  /// Force of the world on the cables that end at a point of it.
+  /// Force of the world on the cables that end at one point of the world.
   struct End {
     std::string name;  ///< Name of the node at this point.
     Vec3 point_m, force_n;

@@ -105,8 +105,7 @@ int CheckSearch(const CheckArguments& args, const std::string& kind, const Overr
   return kOk;
 }
 
-/// Returns the kind of the file: also "study" and "fit", which only this command accepts together
-/// with the others.
+/// Returns the kind of the file. Only this command accepts all kinds, including "study" and "fit".
 std::optional<std::string> KindToCheck(const std::string& path, Diagnostics& out) {
   Diagnostics head;
   const auto read = ReadFileHead(path, head);
@@ -228,7 +227,7 @@ void AddCheck(CLI::App& app, int& exit_code) {
       "--couplings", args->couplings,
       "Print only the oscillator network of the experiment's gait, or of a new gait for the robot");
   AddChoice(*check, "--symmetry", args->symmetry, kSymmetries,
-            "With --couplings: couplings that share their parameters (default: segments)");
+            "With --couplings: rule by which couplings share parameters (default: segments)");
   check->add_option("--svg", args->svg, "With --couplings: SVG drawing of the network to write")
       ->option_text("FILE");
   auto* settled = check->add_flag("--settled", args->settled,

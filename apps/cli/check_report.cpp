@@ -17,7 +17,7 @@
 namespace taut::cli {
 namespace {
 
-constexpr int kMostCollisions = 20;  ///< A longer list of possible collisions is useless.
+constexpr int kMostCollisions = 20;  ///< Limit of the rows in the list of possible collisions.
 
 std::string ActuatorText(const ActuatorDef& actuator) {
   if (actuator.kind == ActuatorDef::Kind::kNone) return "-";
@@ -216,7 +216,7 @@ std::string RobotTables(const RobotSpec& robot) {
 }
 
 CableIntegration IntegrationOf(const ExperimentSpec& experiment) {
-  Diagnostics unused;  // the caller has compiled the model before
+  Diagnostics unused;  // no errors: the caller has already compiled the model
   const auto model = Model::CompileForExperiment(experiment.robot.def, unused);
   if (!model) return {};
   const double step_s = LongestStep(experiment);

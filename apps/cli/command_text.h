@@ -26,7 +26,7 @@ struct WordText {
 struct CommandText {
   std::string name;   ///< "taut gait export".
   std::string group;  ///< Heading of the command in the help text of its parent.
-  std::string what;   ///< A sentence.
+  std::string what;   ///< Purpose, as one sentence.
   std::string more;   ///< Examples and further information.
   std::vector<WordText> arguments, flags;
   std::vector<CommandText> commands;

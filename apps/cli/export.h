@@ -1,4 +1,4 @@
-/// Subcommands of `taut export`. Each has a file of this name, and a line in export.cpp.
+/// Subcommands of `taut export`. Each has a file with its name, and a line in export.cpp.
 #pragma once
 
 #include "commands.h"

@@ -276,7 +276,7 @@ void AddExportStructure(CLI::App& group, int& exit_code) {
           "Output folder for N.csv, C_b.csv, C_s.csv, q.csv, S.csv, ... and structure.json")
       ->option_text("FOLDER");
   command->add_flag("--equilibrium", args->equilibrium,
-                    "Use the nearby equilibrium (as in `taut analyze`) instead of the start");
+                    "Use the nearby equilibrium (as in `taut analyze`) instead of the start pose");
   command->add_flag("--no_weight,--no-weight", args->weightless, "Leave out the robot's weight");
   command->add_flag("--json", args->json, "JSON instead of text");
   command->add_flag("--tables", args->tables, "Also print the table of all members");

@@ -19,7 +19,7 @@
 namespace taut::cli {
 namespace {
 
-/// Exit statuses of the program: `NO_MATPLOTLIB` of plot.py; no such interpreter, as in shells.
+/// Exit statuses: `NO_MATPLOTLIB` of plot.py, and the status of shells without the interpreter.
 constexpr int kNoMatplotlib = 4, kNoProgram = 127;
 
 /// With `python3 -c`, modules in the working folder would replace modules of Python.

@@ -32,8 +32,8 @@ struct FitArguments {
   bool check = false, resume = false, design = false, tables = false, quiet = false, strict = false;
 };
 
-/// Shows the state of a fit: values with units, and a bound of the time left while it searches,
-/// since a search usually ends long before its largest number of iterations.
+/// Shows the state of a fit: values with units, and during the search an upper bound of the time
+/// left. A search usually ends long before its largest number of iterations.
 void Show(ProgressLine& line, const IdentifyProgress& p, const FitProblem& problem,
           double elapsed_s) {
   if (!line.Due()) return;

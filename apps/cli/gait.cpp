@@ -146,7 +146,7 @@ void AddGait(CLI::App& app, int& exit_code) {
            "Model or experiment file (YAML)")
       ->required();
   AddChoice(*create, "--symmetry", args->symmetry, kSymmetries,
-            "Couplings that share their parameters (default: segments)");
+            "Rule by which couplings share parameters (default: segments)");
   AddChoice(*create, "--drives", args->drives, kDrives, "Kind of signal (default: velocity)");
   create->add_option("--name", args->name, "Name of the gait")
       ->option_text("NAME")

@@ -13,7 +13,7 @@
 namespace taut::cli {
 namespace {
 
-constexpr int kLargestMatrix = 24;  // number of oscillators that fits a terminal
+constexpr int kLargestMatrix = 24;  // largest number of oscillators whose matrix fits a terminal
 
 std::string Name(const RobotSpec& robot, const CouplingGraph& graph, int oscillator) {
   const int cable = graph.cables[static_cast<std::size_t>(oscillator)];

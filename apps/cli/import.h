@@ -1,4 +1,4 @@
-/// Subcommands of `taut import`. Each has a file of this name, and a line in import_command.cpp.
+/// Subcommands of `taut import`. Each has a file with its name, and a line in import_command.cpp.
 #pragma once
 
 #include <string>

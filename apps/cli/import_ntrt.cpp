@@ -23,7 +23,7 @@ struct ImportNtrtArguments {
 };
 
 /// Returns the verdict and a summary: differences from NTRT and omissions. `tables`: also the laws
-/// that equal NTRT's.
+/// that agree with NTRT.
 std::string Report(const NtrtImport& import, const std::string& out, bool tables) {
   const NtrtCounts& c = import.counts;
   const std::string verdict =
@@ -107,7 +107,7 @@ void AddImportNtrt(CLI::App& import, int& exit_code) {
   ntrt->add_option("--out", args->out, "Output file (default: standard output)")
       ->option_text("FILE");
   ntrt->add_flag("--tables", args->tables,
-                 "With --out: full report, also of laws that equal NTRT's");
+                 "With --out: full report, including the laws that agree with NTRT");
   ntrt->add_flag("--strict", args->strict, kStrictHelp);
   ntrt->footer(
       "Examples:\n"

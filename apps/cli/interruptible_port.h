@@ -1,5 +1,5 @@
-/// Serial port that closes at a deadline after an interrupt, so that no command hangs on an adapter
-/// that is silent, slow or flooding: operations then fail.
+/// Serial port that closes at a deadline after an interrupt: later operations fail. So no command
+/// hangs on an adapter that is silent, slow or flooding.
 #pragma once
 
 #include <memory>

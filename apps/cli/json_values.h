@@ -12,7 +12,7 @@ inline nlohmann::ordered_json ToJson(const Vec3& v) {
   return nlohmann::ordered_json::array({v.x, v.y, v.z});
 }
 
-/// Returns null for no value.
+/// Returns the number as JSON, or null without a value.
 inline nlohmann::ordered_json ToJson(const std::optional<double>& x) {
   return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json();
 }

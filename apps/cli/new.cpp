@@ -74,7 +74,7 @@ int New(const NewArguments& args) {
   if (args.kind == "robot") {
     return NewRobot(args.name, args.like.empty() ? RobotTemplates().front() : args.like);
   }
-  // Input files may not contain such characters; a line end would become a space.
+  // Input files must not contain control characters; YAML would turn a line end into a space.
   if (Printable(args.model) != args.model || args.model.find('\n') != std::string::npos) {
     fmt::print(stderr,
                "error: --model {}: a path with control characters cannot be written into "

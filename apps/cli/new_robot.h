@@ -10,7 +10,7 @@ namespace taut::cli {
 const std::vector<std::string>& RobotTemplates();
 
 /// Writes the template `like` into the new folder `name`, with `name` as the model's name. Returns
-/// the exit status; reports every file in the way on stderr, and overwrites none.
+/// the exit status. Lists existing files on stderr and overwrites none of them.
 int NewRobot(const std::string& name, const std::string& like);
 
 }  // namespace taut::cli

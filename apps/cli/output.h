@@ -42,7 +42,7 @@ int WriteOrPrint(const std::string& path, const std::string& text);
 void SayNext(std::vector<std::string> words);
 
 /// Prints the command that draws channels of runs for a paper: `figure: taut plot runs/hang ...`.
-/// `page`: the page of the same runs, whose name the figure gets.
+/// `page`: page of these runs; the figure gets the same file name.
 void SayFigure(std::vector<std::string> runs, const std::string& page,
                const std::vector<std::string>& more = {});
 
@@ -52,7 +52,7 @@ void SayNextProgram(const std::vector<std::string>& words);
 /// Runs an experiment and writes traces, inputs.yaml and summary.json into a folder. `options`
 /// contain no traces; their `begin` may refuse the run before warnings about the start are printed.
 /// `more`: additional metadata of the trace. Returns nothing, with an error, if the experiment did
-/// not run. A file that cannot be written is an error, too; then summary.json is not written.
+/// not run. A file that cannot be written is also an error, and then there is no summary.json.
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
                                   RunOptions options, bool csv, Diagnostics& out,
                                   const TraceMetadata& more = {});

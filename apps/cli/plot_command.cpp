@@ -207,7 +207,7 @@ void AddPlot(CLI::App& app, int& exit_code) {
       ->option_text("MM")
       ->check(NumberWithin(20, 2000))
       ->capture_default_str();
-  command->add_option("--height_mm", args->height_mm, "Height [mm] (default: by the layout)")
+  command->add_option("--height_mm", args->height_mm, "Height [mm] (default: set by the layout)")
       ->option_text("MM")
       ->check(NumberWithin(10, 2000));
   command->add_option("--from_s", args->from_s, "Start of the figure [s]")

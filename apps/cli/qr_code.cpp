@@ -8,8 +8,8 @@
 namespace taut::cli {
 namespace {
 
-/// Light margin around the code, which readers need [modules]. The standard asks for 4; phones
-/// read 2, and the code fits more windows.
+/// Light margin around the code [modules]. The standard requires 4; phones accept 2, with which the
+/// code fits smaller windows.
 constexpr int kMargin = 2;
 
 constexpr const char* kBlackOnWhite = "\x1b[38;5;16;48;5;231m";

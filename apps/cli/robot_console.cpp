@@ -267,7 +267,7 @@ bool RobotConsole::LookForStop() {
   }
   if (interrupt_asked && !stop_asked_) {
     stop_asked_ = true;
-    // A program that only reads does not change motors that hold.
+    // A program that only reads does not change the state of motors that hold.
     if (driver_->state().stage == link::Stage::kActive) driver_->Stop("interrupted");
   }
   return stop_asked_;

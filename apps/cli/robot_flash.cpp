@@ -33,7 +33,7 @@ std::vector<std::string> Words(const FlashArguments& args, const std::string& he
   std::vector<std::string> words{"avrdude",       "-p", "atmega328p", "-c",
                                  args.programmer, "-P", args.port};
   if (args.programmer == "arduino") words.insert(words.end(), {"-b", std::to_string(args.baud)});
-  // Identity last: a chip without identity never powers a motor.
+  // The identity is written last: a chip without identity never powers a motor.
   if (args.fuses) words.insert(words.end(), {"-U", "efuse:w:0xFC:m"});
   words.insert(words.end(), {"-U", "flash:w:" + hex + ":i"});
   if (!args.keep_identity) {

@@ -61,7 +61,7 @@ void LookAtSensors(RobotConsole& desk, std::vector<Finding>& findings) {
   }
 }
 
-/// Winds each motor in for a moment, and back, in turn; all others brake.
+/// Winds one motor after another in for a moment, and back; all others brake.
 bool MoveMotors(RobotConsole& desk, const SelftestArguments& args, std::vector<Finding>& findings,
                 Diagnostics& found) {
   link::Driver& driver = desk.driver();
@@ -144,7 +144,7 @@ void AddRobotSelftest(CLI::App& robot, int& exit_code) {
   AddModel(*selftest, *args);
   AddDriving(*selftest, *args);
   selftest->add_flag("--move", args->move,
-                     "Wind each motor in briefly and back, in turn (put the robot on a stand)");
+                     "Wind one motor after another in briefly and back (put the robot on a stand)");
   selftest->add_option("--duty", args->duty, "With --move: duty cycle, 0.05 to 1 (default: 0.5)")
       ->option_text("X")
       ->check(NumberWithin(0.05, 1.0));

@@ -228,7 +228,7 @@ void AddRobotReference(CLI::App& robot, int& exit_code) {
   AddModel(*reference, *args);
   AddCalibration(*reference, *args);
   auto* flag =
-      reference->add_flag("--as_model", *as_model, "Rest lengths of the model for all cables");
+      reference->add_flag("--as_model", *as_model, "Use the model's rest lengths for all cables");
   reference->get_option("values")->excludes(flag);
   reference->add_flag("--dry_run,--dry-run", args->dry_run, "Print the planned actions only");
   reference->footer(

@@ -29,7 +29,7 @@ struct SizeArguments {
   bool json = false, tables = false, strict = false;
 };
 
-/// Returns the folder of a run for its folder or for a trace in it.
+/// Returns the folder of a run, given by this folder or by a trace in it.
 std::string FolderOfRun(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return path;
@@ -334,7 +334,7 @@ void AddSize(CLI::App& app, int& exit_code) {
       "  taut size runs/sine_hand_tuned\n"
       "  taut size runs/sine_hand_tuned --catalogue examples/winches.yaml\n"
       "  taut size runs/sine_hand_tuned --catalogue examples/winches.yaml --spool_radius_m 0.012\n"
-      "Exit status: 0 components for every cable, 1 none for some cable, 2 bad usage, 3 bad "
+      "Exit status: 0 every cable has a component, 1 a cable has none, 2 bad usage, 3 bad "
       "input.");
   size->callback([args, &exit_code] { exit_code = Size(*args); });
 }

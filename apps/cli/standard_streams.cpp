@@ -53,9 +53,9 @@ void Guard(std::FILE*& file, Stream& stream, int mode) {
 }  // namespace
 
 void GuardStreams() {
-  // The next opened file, perhaps a trace, would get the number of a closed descriptor, and
-  // printing would write into it. A descriptor that cannot be written to therefore takes the
-  // number.
+  // If a standard descriptor is closed, the next opened file, perhaps a trace, would get its
+  // number, and printing would write into this file. A descriptor that cannot be written to takes
+  // the number instead.
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0) continue;
     open("/dev/null",

@@ -1,5 +1,5 @@
 /// Standard output and error that tolerate failures: closed streams, a full disk, a pipe without
-/// reader. Results of a command do not depend on them.
+/// reader. The results of a command do not depend on these failures.
 #pragma once
 
 namespace taut::cli {
@@ -7,8 +7,8 @@ namespace taut::cli {
 /// Must be called before anything is opened or printed. After it, printing never fails or throws.
 void GuardStreams();
 
-/// Declares that the output of this command only describes files that it writes: if it cannot be
-/// printed, no result is lost.
+/// Declares that the output of this command only describes files that the command writes: if the
+/// output cannot be printed, no result is lost.
 void OutputIsNews();
 
 /// Flushes the output. Returns the exit status: `exit_code`, or a failure if the output is the

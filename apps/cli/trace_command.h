@@ -1,4 +1,4 @@
-/// Subcommands of `taut trace`. Each has a file of this name, and a line in trace_command.cpp.
+/// Subcommands of `taut trace`. Each has a file with its name, and a line in trace_command.cpp.
 #pragma once
 
 #include "commands.h"

@@ -62,8 +62,8 @@ std::string CommandMeant(const std::string& word) {
   return found == kSynonyms.end() ? "" : found->second;
 }
 
-/// Explains an unknown flag, an unknown command or an extra argument. Returns false if there is
-/// none.
+/// Explains an unknown flag, an unknown command or an extra argument. Returns false if the command
+/// line has none of these errors.
 bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   const std::vector<std::string> unknown = app.remaining();
   const auto flag = std::find_if(unknown.begin(), unknown.end(), IsFlag);
@@ -88,7 +88,7 @@ bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   return true;
 }
 
-/// Explains a missing argument. Returns false if there is none.
+/// Explains a missing argument. Returns false if no argument is missing.
 bool ExplainMissing(const CLI::App& app, const CommandText& command) {
   if (!command.commands.empty()) {
     fmt::print(stderr, "error: {} needs a command: {}\n", command.name,
