@@ -18,14 +18,14 @@ inline constexpr int kMaxComparedRuns = 7;
 /// A message from a client. `type` determines which fields are used.
 struct Command {
   std::string type;  ///< A key of "client" in messages.json.
-  std::string name;  ///< node, name, cable or channel.
+  std::string name;  ///< Field node, name, cable or channel.
   std::string gain;
-  std::string mode;       ///< `mode` of robot_mode, `as` of start.
-  Vec3 vector;            ///< target_m or force_n.
-  double value = 0;       ///< value, factor, time_s, duration_s.
+  std::string mode;       ///< Field `mode` of robot_mode, `as` of start.
+  Vec3 vector;            ///< Field target_m or force_n.
+  double value = 0;       ///< Field value, factor, time_s or duration_s.
   double t0 = 0, t1 = 0;  ///< Time span of want_series [s].
   int id = 0, source = 0, points = 0, count = 1;
-  bool on = false;  ///< Value of record.
+  bool on = false;  ///< Field `on` of the message record.
 };
 
 /// Parses a message. Returns nothing if it violates the protocol; then `error` has the reason.

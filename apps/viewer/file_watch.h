@@ -24,7 +24,7 @@ class FileWatch {
 
  private:
   struct State {
-    std::int64_t time = 0;  ///< Time of the last change. A missing file has 0, and size -1.
+    std::int64_t time = 0;  ///< Time of the last change. A missing file has time 0, size -1.
     std::int64_t size = -1;
     bool operator==(const State&) const = default;
   };

@@ -40,7 +40,7 @@ class HttpSockets::Socket : public std::enable_shared_from_this<Socket> {
 
  private:
   void Answer(const HttpRequest& request) {
-    if (list_ == nullptr) return;  // dropped while the request was arriving
+    if (list_ == nullptr) return;  // the socket was dropped while the request was arriving
     MoveTo(all_.answered_);
     response_ = all_.serve_(request, stream_);
     if (!response_) return Close();

@@ -16,7 +16,7 @@ std::optional<ExperimentSpec> ModelAlone(const std::string& path, const Override
   if (!robot) return std::nullopt;
   ExperimentSpec experiment;
   experiment.robot = std::move(*robot);
-  experiment.robot.parameters.clear();  // changing them requires reading the file again
+  experiment.robot.parameters.clear();  // a change of parameters requires reading the file again
   experiment.robot.def.gravity_m_per_s2 = {};
   experiment.name = experiment.robot.def.name;
   experiment.files = experiment.robot.files;

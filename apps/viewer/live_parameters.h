@@ -14,8 +14,8 @@ namespace taut::viewer {
 struct LiveParameter {
   std::string name, unit;
   double value = 0, min = 0, max = 0;
-  /// Whether it is a parameter of the files, which restarts the experiment when changed. Otherwise
-  /// `kind` and `index` identify it.
+  /// Whether this is a parameter of the files: its change restarts the experiment. Otherwise `kind`
+  /// and `index` identify the parameter.
   bool restarts = false;
   Parameter kind = Parameter::kFrictionScale;
   int index = 0;

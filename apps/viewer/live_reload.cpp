@@ -77,7 +77,7 @@ bool LiveSession::Reload(Diagnostics& out) {
   if (!run) return false;
   const bool ended = end_told_;
   const NamedValues before = std::exchange(given_, ParametersOfFiles(experiment));
-  // A slider keeps its range if the page, not the file, has changed its value.
+  // A slider keeps its range if the page, not the file, has changed the parameter's value.
   for (const auto& [name, value] : inputs.overrides) {
     const auto old = before.find(name);
     if (old != before.end() && given_.contains(name)) given_[name] = old->second;

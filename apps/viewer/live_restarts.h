@@ -65,7 +65,7 @@ class Restarts {
 
   Inputs inputs_;
   Group asked_;
-  std::deque<Group> groups_;  ///< Each is tried as a whole; a group that fails is split in halves.
+  std::deque<Group> groups_;  ///< Tried group by group; a group that fails is split in halves.
   std::optional<Start> found_;
   std::vector<Refusal> refused_;
 };

@@ -155,7 +155,7 @@ bool LiveSession::Drive(int client, const Command& command, std::string& error) 
 }
 
 bool LiveSession::SetParameter(int client, const Command& command, std::string& error) {
-  if (!given_.contains(command.name)) Restart();  // it may be a parameter of the next run
+  if (!given_.contains(command.name)) Restart();  // the name may be a parameter of the next run
   const std::optional<LiveParameter> parameter =
       FindParameter(*run_, experiment_, given_, command.name);
   if (!parameter) {

@@ -52,7 +52,7 @@ void PageSession::Show(Frame frame) {
   std::unique_lock lock(own_mutex_);
   if (now_ && frame.time_s < now_->time_s) {
     ++run_;
-    now_.reset();  // from the previous run, whose history ends with the restart
+    now_.reset();  // the frame belongs to the previous run
   }
   asked_s_ = frame.time_s;
   if (!now_) {

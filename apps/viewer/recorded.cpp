@@ -331,7 +331,7 @@ Frame Recorded::FrameOf(std::size_t row) const {
   for (const ContactColumns& contact : contacts_) {
     double v[6];
     for (int i = 0; i < 6; ++i) v[i] = (*contact.values[i])[row];
-    // an empty slot
+    // NaN: a slot without a contact
     if (std::any_of(std::begin(v), std::end(v), [](double x) { return std::isnan(x); })) continue;
     frame.contacts.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
   }

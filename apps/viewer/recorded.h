@@ -62,8 +62,8 @@ class Recorded {
   std::vector<Frame::Body> PosesOf(std::size_t row) const;
   /// Adds the bends in a row; cable numbers begin at `first`.
   void AddBends(std::size_t row, int first, std::vector<Frame::Bend>& bends) const;
-  /// Adds this run's ghost at a time of another run; NaN if it has no row then. `first_cable`:
-  /// number of its first cable.
+  /// Adds this run's ghost at a time of another run; NaN if this run has no row at that time.
+  /// `first_cable`: number of the ghost's first cable.
   void AddGhost(double time_s, int first_cable, Frame& frame) const;
   Json ComparedRun() const;
   /// Returns the column of a channel, or null.

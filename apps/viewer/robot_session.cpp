@@ -313,7 +313,8 @@ Json RobotSession::MakeScene() const {
   std::vector<ChannelInfo> channels;
   for (const ChannelInfo& channel : history_->channels()) {
     const auto begins = [&](const char* word) { return channel.name.rfind(word, 0) == 0; };
-    // Not measured on a robot; bodies and nodes are available only from a virtual robot.
+    // These quantities are not measured on a robot; bodies and nodes are available only from a
+    // virtual robot.
     if (begins("system/") || begins("real_time_factor")) continue;
     if (options_.truth.empty() && (begins("body/") || begins("node/"))) continue;
     if (begins("cable/")) {

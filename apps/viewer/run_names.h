@@ -9,7 +9,7 @@
 
 namespace taut::viewer {
 
-/// Returns a value from a trace's metadata; empty if it has none.
+/// Returns the value of a key in a trace's metadata; empty if the key is missing.
 std::string Said(const Trace& trace, std::string_view key);
 
 struct NamedTrace {

@@ -141,7 +141,7 @@ struct Server::Impl {
   }
 
   void Fetch() {
-    woken = false;  // before fetching: later messages wake again
+    woken = false;  // cleared before fetching, so that later messages wake the server again
     for (Outgoing& message : session.TakeMessages()) {
       if (message.client == 0) {
         ToAll(message.text);

@@ -29,7 +29,7 @@ struct ServerOptions {
   /// Whether SIGINT, SIGTERM and SIGHUP end the server; otherwise the program handles them.
   bool ends_on_signals = true;
 
-  /// Limit of plain HTTP sockets, of which a browser opens six. Above it, a new one replaces the
+  /// Limit of plain HTTP sockets (a browser opens six). Above the limit, a new socket replaces the
   /// one with the longest unfinished request.
   std::size_t max_http = 256;
   /// Timeouts for receiving a request (also the next on its socket) and for sending an answer.
@@ -49,8 +49,8 @@ class Server {
   bool Listen(std::string& error);
   std::uint16_t port() const;  ///< The bound port.
 
-  /// Serves until Stop or a signal; has stopped the session when it returns. The next such signal
-  /// ends the program.
+  /// Serves until Stop or a signal, then stops the session and returns. A second signal ends the
+  /// program.
   void Run();
   void Stop();  ///< Thread-safe.
 

@@ -41,8 +41,8 @@ class Session {
   /// Starts the thread, which calls `wake` when there is something to fetch; `wake` must return at
   /// once.
   void Start(std::function<void()> wake);
-  /// Replaces the thread: executes commands and advances for some milliseconds. Returns the latest
-  /// time of the next call.
+  /// Replaces the thread in programs without one: executes commands and advances for some
+  /// milliseconds. Returns the latest time of the next call.
   Clock::time_point Turn();
   /// Waits for the operation in progress; discards waiting commands.
   void Stop();
