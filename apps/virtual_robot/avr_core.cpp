@@ -35,9 +35,9 @@ AvrCore::AvrCore(const AvrProgram& program)
   avr_loadcode(avr_, flash.data(), static_cast<std::uint32_t>(flash.size()), 0);
   avr_->codeend = AvrProgram::kFlashBytes;
   LoadEeprom(0, program.eeprom);
-  // simavr's sleep function suspends the thread and wakes the core one cycle late. A core that
-  // falls asleep with the last instruction of a run finds the stop in the past, and would jump to
-  // the next timer.
+  // simavr's sleep function suspends the thread and wakes the core one cycle late. If a core falls
+  // asleep with the last instruction of a run, the scheduled stop is in the past, and the core
+  // would jump to the next timer.
   avr_->sleep = [](avr_t* avr, avr_cycle_count_t most) {
     const std::uint64_t stop = std::max(avr->cycle, Hooks::Self(avr).stop_cycle_);
     if (avr->cycle + most > stop) avr->cycle = stop - most;

@@ -65,7 +65,7 @@ bool BoardsPlant::SetUp(Diagnostics& out) {
 }
 
 bool BoardsPlant::Recover(Diagnostics& out) {
-  // A board with a timeout or a fault accepts no mode until it is cleared.
+  // A board with a timeout or a fault accepts no mode until these are cleared.
   if (driver_.Go(board::Mode::kHold)) {
     driver_.ClearFaults();
     driver_.Cycle(3);

@@ -28,7 +28,8 @@ enum DirectError : std::uint8_t {
 };
 constexpr std::uint8_t kIoChange = 0x10;  // sets pins; does not change the mode otherwise
 constexpr std::size_t kMostWritten = 60, kMostRead = 64, kDirectBuffer = 60;
-constexpr std::size_t kMostWrittenAfterTwo = 59, kMostReadAfterOne = 60;  // registers
+constexpr std::size_t kMostWrittenAfterTwo = 59, kMostReadAfterOne = 60;  // limits of frames with
+                                                                          // register addresses
 constexpr int kFirstWithTest = 5, kFirstThatStops = 8;
 
 using Kind = BusStep::Kind;
@@ -91,7 +92,7 @@ void UsbIss::PowerCycle() {
 Time UsbIss::NextAt() const { return due_; }
 
 void UsbIss::Receive(Time now, std::span<const std::uint8_t> burst) {
-  // A transfer from before it was unplugged may still be on the bus.
+  // A transfer that began before the adapter was unplugged may still be on the bus.
   if (phase_ != Phase::kIdle || bus_.Busy() || burst.empty()) {
     ++ignored_;
     return;

@@ -39,8 +39,8 @@ Time I2cBus::Duration(const BusStep& step) const {
 Time I2cBus::SafeUntil(Time now) const {
   if (phase_ == Phase::kIdle) return kNever;
   if (phase_ == Phase::kReady) return now + Duration(steps_[next_]);
-  // Limit set by the step after the scheduled one: a written byte may remain unacknowledged, and
-  // then a stop follows after one bit.
+  // The step after the scheduled step sets the limit: if a written byte remains unacknowledged, a
+  // stop follows after one bit.
   const bool may_stop = steps_[next_].kind != BusStep::Kind::kRead || next_ + 1 == steps_.size();
   return event_.at + (may_stop ? timing_.bit : Duration(steps_[next_ + 1]));
 }

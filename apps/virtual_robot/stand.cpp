@@ -23,8 +23,8 @@ void Stand::Step(Time now) {
     return;
   }
   if (driven_since_ < 0) driven_since_ = now;
-  // Until then the stand holds the robot: motor drivers that are on only briefly, as in a
-  // self-test, would not hold it.
+  // Keep holding: motor drivers that are on only briefly, as in a self-test, would not hold the
+  // robot.
   if (now - driven_since_ < kDrivenFor) return;
   plant_.SetHeld(false);
   if (log_) log_(now, "stand", "released: the drivers of all boards have been on for 0.1 s");

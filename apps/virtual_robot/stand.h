@@ -1,4 +1,4 @@
-/// Stand that holds the robot until its boards do.
+/// Stand that holds the robot until its motors do.
 #pragma once
 
 #include "apps/virtual_robot/emulated_robot.h"

@@ -26,8 +26,8 @@ class TruthServer {
   /// dropped.
   static constexpr std::size_t kMostPending_bytes = std::size_t{1} << 20;
 
-  /// Listens at `path`. An abandoned socket there is replaced, other files are not. Returns null,
-  /// with an error in `out`, on failure. The plant must outlive the server.
+  /// Listens at `path`. An abandoned socket at this path is replaced, other files are not. Returns
+  /// null, with an error in `out`, on failure. The plant must outlive the server.
   static std::unique_ptr<TruthServer> Open(const std::string& path, const MotorPlant& plant,
                                            Diagnostics& out);
   ~TruthServer();
