@@ -16,8 +16,8 @@ namespace {
 
 bool IsPattern(const std::string& from) { return from.find('*') != from.npos; }
 
-/// First rule for each name. Names without `*` are looked up: a log and its mapping may have
-/// 100,000 columns each.
+/// Finds the first rule for a name. Rules without `*` are found in a hash table, because a log and
+/// its mapping may have 100,000 columns each.
 class RuleFinder {
  public:
   explicit RuleFinder(const std::vector<Mapping::Rule>& rules) : rules_(rules) {

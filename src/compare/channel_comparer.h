@@ -13,7 +13,7 @@ namespace taut::compare {
 double Percent(double a, double b);
 
 /// Compares two traces channel by channel. Holds references to the constructor's arguments, which
-/// must outlive it.
+/// must outlive the object.
 class ChannelComparer {
  public:
   ChannelComparer(const Trace& a, const Trace& b, const CompareOptions& options,

@@ -44,7 +44,7 @@ const Words kOtherQuantities{
     "pwm",      "temperature",  "temp",      "twist",    "wrench",     "torque",    "moment",
     "angular",  "linear",       "gyro",      "status",   "flag",       "marker"};
 
-/// Words that add nothing to the name of a member.
+/// Words that contribute nothing to the name of a member.
 const Words kExplained{
     "force",    "forces",    "kraft",     "zugkraft",    "tension",     "tensions", "load",
     "cell",     "loadcell",  "lc",        "cable",       "cables",      "seil",     "rope",
@@ -66,7 +66,7 @@ bool IsNumber(const std::string& token) {
 
 struct Match {
   std::string kind, name;
-  std::size_t length = 0, from = 0, to = 0;  ///< Characters, and tokens of the column.
+  std::size_t length = 0, from = 0, to = 0;  ///< Of the match: characters, range of tokens.
   bool several = false;
 };
 

@@ -62,7 +62,8 @@ class Guess {
     return i != clock_.column && !used_.contains(i) && !name.empty() && name.find('*') == name.npos;
   }
 
-  /// Vectors and quaternions: columns of one member whose names differ only in their axis.
+  /// Adds rules for vectors and quaternions: columns of one member whose names differ only in their
+  /// axis.
   void Groups() {
     std::map<std::string, std::map<char, std::size_t>> groups;  // by channel
     for (std::size_t i = 0; i < meanings_.size(); ++i) {
@@ -138,7 +139,7 @@ class Guess {
     }
   }
 
-  /// Says why a column with the name of a member has no channel.
+  /// Reports why a column with the name of a member has no channel.
   void NotAssigned(std::size_t i) {
     const ColumnMeaning& meaning = meanings_[i];
     const std::string what = Quoted(form_.names[i]) + " of " + meaning.kind + " " + meaning.member;
@@ -167,7 +168,8 @@ class Guess {
     if (channel.starts_with("cable/") && channel.ends_with("/tension_n")) ++tensions_;
   }
 
-  /// As many columns of forces as cables, none with a name of a cable: in the robot's order.
+  /// Assigns columns of forces to the cables in the robot's order, if there are as many columns as
+  /// cables and none has the name of a cable.
   void CablesInOrder() {
     if (tensions_ > 0 || robot_.cables.empty()) return;
     std::vector<std::size_t> forces;

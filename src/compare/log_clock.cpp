@@ -19,7 +19,7 @@ constexpr struct {
   const char* unit;
   double from;
 } kEpochs[] = {{"s", 1.42e9}, {"ms", 1.42e12}, {"us", 1.42e15}, {"ns", 1.42e18}};
-constexpr double kEpochSpan = 2.8;  // times `from`
+constexpr double kEpochSpan = 2.8;  // end of a range, as a multiple of `from`
 /// Rows per second of usual loggers.
 constexpr double kLeastRate_hz = 0.5, kMostRate_hz = 1e6;
 
@@ -43,8 +43,8 @@ class ClockGuess {
     return values.size() > 1;
   }
 
-  /// Returns the format in which all cells of a column are increasing times; the one in which a
-  /// day of a month comes first wins over the other if both do.
+  /// Returns the format in which all cells of a column are increasing times. If both orders of day
+  /// and month fit, returns the format with the day first.
   std::optional<ClockFormat> FormatOf(std::size_t column) const {
     for (const ClockFormat format : {ClockFormat::kIso8601, ClockFormat::kTimeOfDay,
                                      ClockFormat::kDayMonthYear, ClockFormat::kMonthDayYear}) {
@@ -59,14 +59,15 @@ class ClockGuess {
     if (const auto known = base::FindUnit(unit); known && known->si != "s") return false;
     if (name.find_first_of("[(") != name.npos && unit.empty()) {
       const auto tokens = Tokens(name.substr(0, name.find_first_of("[(")));
-      if (tokens == std::vector<std::string>{"t"}) return false;  // T [degC]
+      // "T [degC]" is a temperature.
+      if (tokens == std::vector<std::string>{"t"}) return false;
     }
     return name == "X_Value" ||
            HasWord(Tokens(name), {"time", "zeit", "t", "temps", "tiempo", "stamp", "date", "datum",
                                   "clock", "timestamp", "seconds", "elapsed"});
   }
 
-  /// Counters of rows increase, too, but are no clocks.
+  /// Returns whether a name is that of a row counter, which increases like a clock.
   bool NamesCounter(std::size_t i) const {
     return HasWord(Tokens(form_.names[i]), {"frame", "frames", "sample", "samples", "index",
                                             "count", "nr", "no", "scan", "record", "row", "seq"});

@@ -54,7 +54,7 @@ std::optional<Lines> Sample(const std::string& path, TextEncoding& encoding, Dia
   return Sample(path, encoding, out);
 }
 
-/// Number of cells that most of the last lines have.
+/// Returns the number of cells that most of the last lines have.
 std::size_t UsualCount(const std::vector<Cells>& table) {
   std::map<std::size_t, int> counts;
   const std::size_t from = table.size() / 2;
@@ -66,8 +66,8 @@ std::size_t UsualCount(const std::vector<Cells>& table) {
   return best;
 }
 
-/// A row has as many cells as the others, or leaves out empty ones at its end, and at least half of
-/// those with text are numbers or times.
+/// Returns whether a line is a row: it has as many cells as the others, or lacks empty cells at its
+/// end, and at least half of its filled cells are numbers or times.
 bool IsRow(const Cells& cells, std::size_t usual, char decimal) {
   if (cells.empty() || cells.size() > usual + 1 || cells.size() + 1 < usual) return false;
   std::size_t values = 0, texts = 0;
@@ -114,7 +114,8 @@ Marks GuessMarks(const Lines& lines) {
   return best;
 }
 
-/// A line with a single text above several columns is a title; `merged`: such lines name columns.
+/// Returns whether a line names columns. A line with a single text above several columns is a
+/// title, unless such lines name columns (`merged`).
 bool IsHeader(const Cells& cells, std::size_t usual, char decimal, bool merged) {
   if (cells.size() + 1 < usual || cells.size() > usual + 1) return false;
   const auto texts = std::count_if(cells.begin(), cells.end(), [](const trace::TableCell& cell) {
@@ -125,7 +126,7 @@ bool IsHeader(const Cells& cells, std::size_t usual, char decimal, bool merged) 
                       [&](const trace::TableCell& cell) { return IsValue(cell.text, decimal); });
 }
 
-/// Whether a header's upper lines name several columns by one cell.
+/// Returns whether one cell of a header's upper line names several columns.
 bool HasMergedCells(const Cells& upper, const Cells& lower) {
   std::size_t gaps = 0;
   bool named = false;
@@ -136,7 +137,7 @@ bool HasMergedCells(const Cells& upper, const Cells& lower) {
   return gaps > 0;
 }
 
-/// Text after a key of lines such as "FREQUENCY<tab>100".
+/// Returns the text after a key of lines such as "FREQUENCY<tab>100".
 std::string After(const Lines& lines, std::string_view key) {
   for (const std::string& line : lines) {
     if (!line.starts_with(key) || line.size() <= key.size()) continue;
@@ -154,14 +155,14 @@ std::optional<double> RateIn(const std::string& text) {
   return value && *value >= kLeast_hz ? value : std::nullopt;
 }
 
-/// Names for the columns of a table without a header.
+/// Returns names for the columns of a table without a header.
 std::vector<std::string> Numbered(std::size_t count) {
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= count; ++i) names.push_back(fmt::format("column {}", i));
   return names;
 }
 
-/// Facts that known programs write above the header.
+/// Reads the facts that known programs write above the header.
 void ReadPreamble(const Lines& lines, std::size_t first_row, LogForm& form) {
   const std::string& first = lines.front();
   if (first.starts_with("LabVIEW Measurement")) {
@@ -228,7 +229,7 @@ void MakeUnique(LogForm& form) {
   if (changed) form.layout.columns = form.names;
 }
 
-/// Whether cells such as "995" and "1.000" of a column are whole numbers with separators of
+/// Returns whether cells such as "995" and "1.000" of a column are whole numbers with separators of
 /// thousands.
 bool MayHaveThousands(const std::vector<std::string>& cells) {
   bool whole = false, grouped = false;
@@ -298,7 +299,7 @@ std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
   const bool merged = lines->front().starts_with("Trajectories") ||
                       lines->front().starts_with("Segments") ||
                       lines->front().starts_with("Model Outputs");
-  // Backwards to the last header: lines between rows, such as remarks, are reported below.
+  // Search backward for the last header: lines between rows, such as remarks, are reported below.
   std::size_t first = table.size();
   for (std::size_t i = table.size(); i-- > 0;) {
     if (IsRow(table[i], usual, marks.decimal)) {

@@ -45,7 +45,7 @@ std::string WithAxis(std::string name, std::string axis) {
   return name.replace(at, kAxisMark.size(), axis);
 }
 
-/// Returns how often a name contains either mark.
+/// Returns how often a name contains `{axis}` or `{AXIS}`.
 int AxisMarks(const std::string& name) {
   int marks = 0;
   for (const std::string_view mark : {kAxisMark, kCapitalMark}) {

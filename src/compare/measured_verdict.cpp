@@ -13,7 +13,7 @@ namespace {
 
 /// A bias explains an error if it is at least this share of the RMSE, in all channels.
 constexpr double kMostlyBias = 0.7;
-/// Correlation from which a lag is one.
+/// Smallest correlation at which the lag of a channel counts.
 constexpr double kCorrelated = 0.5;
 
 double MedianOf(std::vector<double> values) {

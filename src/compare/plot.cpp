@@ -12,7 +12,7 @@ namespace {
 constexpr double kWidth = 460, kHeight = 260;
 constexpr double kLeft = 62, kRight = 12, kTop = 28, kBottom = 42;
 
-/// Lines of more points have no dots.
+/// Largest number of points of a line that is drawn with dots.
 constexpr std::size_t kMostDots = 60;
 
 std::string HtmlRow(const std::vector<std::string>& cells, const char* tag) {
