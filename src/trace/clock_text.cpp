@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kMinute_s = 60, kHour_s = 3600;
 
-/// Reads a text from left to right; after the first mismatch everything fails.
+/// Reads a text from left to right; after the first mismatch, all further reads fail.
 class Reader {
  public:
   explicit Reader(std::string_view text) : rest_(text) {}
 
-  /// Whole number of `least` to `most` digits.
+  /// Reads a whole number of `least` to `most` digits.
   int Whole(std::size_t least, std::size_t most) {
     std::size_t digits = 0;
     int value = 0;
@@ -42,7 +42,7 @@ class Reader {
   }
   void Fail() { good_ = false; }
 
-  /// Fraction of a second after the whole ones: ".25" or ",25"; 0 if there is none.
+  /// Reads a fraction of a second after the whole seconds: ".25" or ",25"; 0 if there is none.
   double Fraction() {
     if (rest_.empty() || (rest_.front() != '.' && rest_.front() != ',')) return 0.0;
     std::string text = "0.";
@@ -63,7 +63,7 @@ class Reader {
   bool good_ = true;
 };
 
-/// hh:mm:ss with a fraction; also hh:mm after a date. Alone, hh:mm could be mm:ss.
+/// Reads hh:mm:ss with a fraction; after a date also hh:mm, which alone could be mm:ss.
 double TimeOfDay(Reader& in, bool after_date) {
   const int hours = in.Whole(1, 2);
   in.Expect(':');
@@ -89,7 +89,7 @@ double Date(Reader& in, int year, int month, int day) {
   return kDay_s * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
 }
 
-/// "Z", "+01:00", "-0500" or nothing, as seconds east of Greenwich.
+/// Reads "Z", "+01:00", "-0500" or nothing. Returns the seconds east of Greenwich.
 double Zone(Reader& in) {
   if (in.empty() || in.Take('Z')) return 0;
   const bool east = in.Take('+');

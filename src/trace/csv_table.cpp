@@ -85,7 +85,7 @@ class TableParser {
       }
       return static_cast<std::size_t>(found - names.begin());
     };
-    columns_.assign(names.size() + 1, Use::kNothing);  // the last one: for unknown names
+    columns_.assign(names.size() + 1, Use::kNothing);  // the last element: for unknown names
     if (!layout_.row_s) columns_[index(layout_.time_column)] = Use::kTime;
     if (is_long()) {
       for (const std::string& name : layout_.name_columns) columns_[index(name)] = Use::kName;

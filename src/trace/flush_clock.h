@@ -7,7 +7,7 @@
 namespace taut::trace {
 
 /// Writes the first row at once, so that a run leaves data even if it is killed early. The interval
-/// then doubles up to half a second. This is half of the guarantee of `TraceWriter`, because the
+/// then doubles up to half a second: half of the time that `TraceWriter` guarantees, because the
 /// clock is checked only at rows. The content of the file does not depend on the clock.
 class FlushClock {
  public:

@@ -53,8 +53,8 @@ struct MatWalk {
   std::string error;
 };
 
-/// Reads one dataset. Leaves `into` empty if it is no real matrix. Returns false and sets an error
-/// on failure.
+/// Reads one dataset. Leaves `into` empty if the dataset is not a real matrix. Returns false and
+/// sets an error on failure.
 bool ReadOne(hid_t set, MatWalk& walk, MatVariable& into) {
   const Hdf5Id type(H5Dget_type(set), H5Tclose), space(H5Dget_space(set), H5Sclose);
   const H5T_class_t kind = H5Tget_class(type);

@@ -42,10 +42,10 @@ class Columns {
     return fits ? Excess::kFits : Excess::kValues;
   }
 
-  /// Of two values of a time the last one counts; values before the first and after the last
-  /// message of a topic, and in its gaps, are NaN. Returns nothing if the table of all times and
-  /// columns would have too many values: a few megabytes of messages, each with another number,
-  /// would fill the memory.
+  /// Returns the trace. Of two values at one time the last counts; values before the first and
+  /// after the last message of a topic, and in its gaps, are NaN. Returns nothing if the table of
+  /// all times and columns would have too many values: a few megabytes of messages, each with
+  /// another number, would fill the memory.
   std::optional<Trace> Take() {
     std::map<std::uint64_t, std::size_t> rows;
     for (const Column& column : columns_) {
@@ -119,7 +119,8 @@ void JsonNumbers(const nlohmann::json& json, const std::string& path, int depth,
                  const std::function<void(const std::string&, double)>& number) {
   constexpr int kDeepestJson = 16;
   if (depth > kDeepestJson) return;
-  if (path.size() > 2 * kMostMcapNameBytes) return number(path, 0);  // refused as too long
+  // The name is refused as too long.
+  if (path.size() > 2 * kMostMcapNameBytes) return number(path, 0);
   if (json.is_object()) {
     for (const auto& [key, value] : json.items()) {
       JsonNumbers(value, path + "/" + key, depth + 1, number);
@@ -138,7 +139,7 @@ void JsonNumbers(const nlohmann::json& json, const std::string& path, int depth,
   }
 }
 
-/// Topics that taut adds for viewers repeat values of the trace.
+/// Returns whether taut wrote a topic for viewers only: it repeats values of the trace.
 bool IsDrawing(const McapChannel& channel) {
   return channel.schema->name.starts_with("foxglove.Scene") ||
          channel.schema->name.starts_with("foxglove.FrameTransform");
@@ -148,7 +149,7 @@ bool IsDrawing(const McapChannel& channel) {
 struct Definition {
   std::shared_ptr<const McapSchema> schema;  ///< Keeps the key of the definition valid.
   std::optional<Ros2Message> message;
-  std::string why;  ///< Reason for no message.
+  std::string why;  ///< Reason why `message` is empty.
 };
 
 void RefuseSize(const std::string& path, Excess excess, Diagnostics& out) {

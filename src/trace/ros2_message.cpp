@@ -14,8 +14,8 @@ namespace {
 constexpr std::uint32_t kMostElements = 64;
 constexpr int kDeepest = 16;
 constexpr std::size_t kMostNameBytes = 1000;
-/// Fields and elements that a message may have, in addition to some for each of its bytes. Types
-/// without fields take no bytes: nested lists of them would never end.
+/// Limit of the fields and elements of a message: a constant, and a number for each of its bytes.
+/// Types without fields take no bytes: nested lists of such types would never end.
 constexpr std::size_t kFreeSteps = 1000, kStepsPerByte = 8;
 
 struct Primitive {
@@ -177,7 +177,7 @@ class Ros2Message::Decoder {
   void Struct(const std::string& type, const std::string& path, bool shown, int depth,
               std::string& label) {
     if (depth > kDeepest) good_ = false;
-    std::vector<std::string> names;  // of the list `name`
+    std::vector<std::string> names;  // elements of the list `name`
     for (const Field& field : of_.types_.at(type)) {
       if (!Step()) return;
       const std::string here = path.empty() ? field.name : path + "/" + field.name;
@@ -236,7 +236,7 @@ class Ros2Message::Decoder {
     }
   }
 
-  /// A struct of a list, whose name may be one of its own fields.
+  /// Decodes a struct of a list; one of its fields may contain its name.
   void Element(const std::string& type, const std::string& path, std::uint64_t index, bool shown,
                int depth) {
     std::vector<std::pair<std::string, double>> numbers;
@@ -258,7 +258,7 @@ class Ros2Message::Decoder {
   const Ros2Message& of_;
   std::string_view data_;
   const Numbers& number_;
-  std::size_t& steps_;  ///< Left for the whole message.
+  std::size_t& steps_;  ///< Steps left for the whole message.
   std::size_t at_ = 0;
   bool big_ = false, good_ = true;
 };

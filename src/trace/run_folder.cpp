@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kInputs = "inputs.yaml";
 constexpr const char* kSummary = "summary.json";
-/// In the order in which a new run removes them.
+/// Files of a run, in the order in which a new run removes them.
 constexpr const char* kPieces[] = {kSummary,    "report.html", "events.jsonl",
                                    "trace.csv", "trace.h5",    kInputs};
 constexpr std::string_view kIdLine = "# run ";
@@ -272,7 +272,7 @@ std::unique_ptr<TraceWriter> RunFolder::BeginWith(std::unique_ptr<TraceWriter> l
 }
 
 bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) {
-  if (inputs_) inputs_->Leave();  // after an error below, the next reader completes it
+  if (inputs_) inputs_->Leave();  // after an error below, the next reader completes the replacement
   std::vector<std::string> replaced = traces;
   if (inputs_) replaced.push_back(kInputs);
   if (!RemoveRunBefore(folder_, replaced, out)) return false;
