@@ -78,7 +78,8 @@ std::vector<AliasTest> TestAliases(const FitProblem& problem, const std::vector<
     }
     const double score = rest.dot(system.residual), change = -score / information;
     test.fall = score * score / information;
-    // Sds that are too small by the same factor would make every effect significant.
+    // Scale by the reduced chi-square: sds that are all too small would make every effect
+    // significant.
     const double left = std::max(chi2 - test.fall, 0.0);
     const double factor = freedom >= 1 ? std::max(1.0, left / freedom) : 1.0;
     test.value = alias.neutral + change;

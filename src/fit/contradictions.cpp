@@ -28,8 +28,8 @@ bool Estimated(const ParameterVerdict& v) { return v.kind == Determined::kEstima
 /// Point one standard error of a parameter away.
 struct PointAway {
   std::vector<double> values;
-  /// Whether all other parameters follow as in a refit. Confounded parameters do not, because their
-  /// errors are infinite; chi-square then rises by more than after a refit.
+  /// Whether all other parameters follow as in a refit. Confounded parameters do not follow,
+  /// because their errors are infinite; chi-square then rises by more than after a refit.
   bool refitted = true;
 };
 

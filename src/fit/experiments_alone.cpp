@@ -95,7 +95,7 @@ void Refit(const FitProblem& by_experiment, const std::vector<double>& values,
   }
 }
 
-/// Compares the estimates of one parameter. Returns nothing if fewer than two experiments have one.
+/// Compares the estimates of one parameter. Returns nothing for fewer than two estimates.
 std::optional<Homogeneity> Compare(const FitProblem& problem, const ExperimentsAlone& alone,
                                    std::size_t j) {
   double weights = 0, mean = 0;

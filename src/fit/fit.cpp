@@ -15,7 +15,7 @@ std::string Joined(const std::vector<std::string>& sentences) {
 }
 
 /// Returns the track with the lowest cost; the first if several are equal. Returns nothing if all
-/// failed.
+/// tracks failed.
 std::optional<std::size_t> BestTrack(const FitState& state) {
   std::optional<std::size_t> best;
   for (std::size_t t = 0; t < state.tracks.size(); ++t) {

@@ -59,7 +59,7 @@ Local MakeLocal(const FitProblem& problem, const std::vector<double>& values,
   const auto n = static_cast<Eigen::Index>(local.free.size());
   if (n == 0) return local;
   local.svd = fit::Decompose(local.data);
-  // Equivalent of the data without null directions: diag(s) V^T.
+  // A matrix with the same J^T J as the data, without null directions: diag(s) V^T.
   Matrix stacked = Matrix::Zero(n + all.rows() - system.data_rows, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const double s = local.svd.value[k];
@@ -127,8 +127,8 @@ void Classify(const Local& local, std::size_t k, ParameterVerdict& verdict) {
     if (j != i) largest = std::max(largest, std::fabs(d[j]));
   }
   if (verdict.confounded_residual > scale / (fit::kEstimatedShare * ScaleIn(p))) {
-    // A compensating change leaves the residuals nearly unchanged. This one does not: it is null
-    // only by the errors of the derivatives (eq. F.12).
+    // A compensating change leaves the residuals nearly unchanged. This change does not: its
+    // direction counts as null only because of the errors of the derivatives (eq. F.12).
     verdict.kind = Determined::kUnreliable;
     verdict.contradictions.push_back(
         "its derivatives are too inaccurate: a change that they do not resolve moves the residuals "

@@ -16,8 +16,8 @@ struct Singular {
 };
 Singular Decompose(const Matrix& jacobian);
 
-/// Pseudo-inverse of J^T J, and the parameters in its null space. Their variance is infinite, but
-/// finite in the pseudo-inverse.
+/// Pseudo-inverse of J^T J, and the parameters in its null space. The variance of these parameters
+/// is infinite, but the pseudo-inverse gives finite values.
 struct Spread {
   Matrix covariance;          ///< Without null directions.
   std::vector<bool> endless;  ///< Whether a parameter belongs to a null direction.

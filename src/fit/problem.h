@@ -39,7 +39,7 @@ double Loss(const FitRow& row, double residual);
 /// Returns d loss / d(r^2), the weight in iteratively reweighted least squares.
 double LossWeight(const FitRow& row, double residual);
 
-/// Selects rows by group. Holds a reference to `left_out`, which must outlive it.
+/// Selects rows by group. Holds a reference to `left_out`, which must outlive the object.
 class Rows {
  public:
   Rows(const FitProblem& problem, const std::vector<bool>& left_out)
