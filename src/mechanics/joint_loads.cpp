@@ -46,7 +46,7 @@ Wrench On(const BodyDef& body, const Wrench& w, const Vec3& point, double sign) 
   return {sign * w.force, sign * (w.torque + Cross(point - body.com_m, w.force))};
 }
 
-/// I^-1 t
+/// Returns the inverse inertia times a vector, I^-1 t.
 Vec3 TurnBy(const Inertia& i, const Vec3& t) {
   const double l1 = i.xy / i.xx, l2 = i.xz / i.xx;
   const double d1 = i.yy - l1 * i.xy, m = i.yz - l2 * i.xy, l3 = m / d1;
@@ -60,7 +60,7 @@ Wrench SpringOf(const JointDef& j) {
   if (j.stiffness == 0) return {};
   const Vec3 apart = j.to_m - j.from_m;
   const double shorter = j.turned.w < 0 ? -1 : 1, cosine = std::fabs(j.turned.w);
-  const Vec3 half = shorter * Vec3{j.turned.x, j.turned.y, j.turned.z};  // sine * axis
+  const Vec3 half = shorter * Vec3{j.turned.x, j.turned.y, j.turned.z};  // sin(angle / 2) * axis
   if (j.kind == JointKind::kBall) {
     const double sine = std::sqrt(Dot(half, half));
     if (sine == 0) return {};

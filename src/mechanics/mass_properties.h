@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// In W; the inertia is about the center of mass, in axes parallel to W.
+/// Mass and center in W; inertia about the center of mass, in axes parallel to W.
 struct MassProperties {
   double mass_kg = 0.0;
   Vec3 com_m;
