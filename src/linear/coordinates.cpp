@@ -53,7 +53,7 @@ Coordinate& Coordinates::State(std::string name, std::string unit, SignalKind ki
 
 void Coordinates::AddBodies(const World<Plain>& at) {
   const sim::Layout& l = at.layout();
-  const bool touches = at.touches();  // with contacts, changes must be smaller than the lift off
+  const bool touches = at.touches();  // with contacts, changes must be smaller than the lift above
                                       // the ground
   const std::vector<BodyDef>& bodies = at.def().bodies;
   for (int b = 0; b < at.view().body_count; ++b) {

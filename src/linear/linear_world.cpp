@@ -93,9 +93,9 @@ void World<Plain>::Step(double step_s) {
 
 /// Steps with accurate derivatives. The solver stops when the laws hold to its tolerance,
 /// regardless of derivatives. So the step is repeated with one Newton step from the impulses found.
-/// This makes derivatives exact for linear laws: cables, joints, and contacts because bodies are
-/// lifted slightly off them (state_space.cpp). The solver's compliances leave a small error, which
-/// a second repetition removes (L3).
+/// This repetition makes derivatives exact for linear laws: cables, joints, and contacts, because
+/// bodies are lifted slightly off their contacts (state_space.cpp). The solver's compliances leave
+/// a small error, which a second repetition removes (L3).
 template <>
 void World<Dual>::Step(double step_s) {
   sim::Group& g = inside_->groups[0];
