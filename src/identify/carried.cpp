@@ -12,8 +12,8 @@
 namespace taut::identify {
 namespace {
 
-/// Largest relative difference between computed member forces and applied loads. A larger one means
-/// that something else holds the bodies.
+/// Largest relative difference between computed member forces and applied loads. A larger
+/// difference means that other forces hold the bodies, too.
 constexpr double kClosed = 1e-6;
 
 Vec3 PlaceOf(const ModelDef& def, const Pose& pose, int body, const Vec3& described_m) {

@@ -17,8 +17,8 @@ namespace taut::identify {
 
 struct Computed {
   std::string failed;      ///< Reason for a missing result; otherwise empty.
-  std::string unreadable;  ///< Reason why files cannot be read. Then the parameters are not to
-                           ///< blame, and the result is unknown.
+  std::string unreadable;  ///< Reason why files cannot be read. Then the parameters are not the
+                           ///< cause, and the result is unknown.
   bool stopped = false;
   std::vector<double> time_s;  ///< Times of set points for static equilibria; 1, 2, ... for load
                                ///< cases.

@@ -181,7 +181,7 @@ std::vector<CarriedLoad> Made::Carried() const {
   return out;
 }
 
-/// Selects the estimates that affect training data. The others keep their start values.
+/// Selects the estimates that affect training data. All other estimates keep their start values.
 void Made::ChooseEstimates() {
   for (std::size_t i = 0; i < spec_.estimates.size(); ++i) {
     const auto& on = spec_.estimates[i].experiments;

@@ -147,7 +147,7 @@ std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) 
       "untuned</span><span><i class=\"dot fitted\"></i>fitted data"
       "</span><span><i class=\"dot held\"></i>held-out "
       "data</span></p>\n";
-  // Few data of a channel stand in the figure of measured and computed values.
+  // A channel with few data is in the figure of measured and computed values instead.
   std::erase_if(order, [&](const std::string& channel) {
     const std::vector<compare::Series>& series = plots[channel].series;
     return series[1].points.size() + series[2].points.size() < kFewestOfPlot;
@@ -272,7 +272,7 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
   out += std::string("<div class=\"verdict ") +
          (v.judgement == FitJudgement::kGood ? "good" : "bad") + "\">";
   for (const std::string& sentence : v.sentences) {
-    const auto& parameters = v.identifiability.parameters;  // whose sentences follow below
+    const auto& parameters = v.identifiability.parameters;  // their sentences follow below
     const bool below = std::any_of(parameters.begin(), parameters.end(),
                                    [&](const auto& p) { return p.sentence == sentence; });
     if (!below) out += Escaped(sentence) + "<br>\n";

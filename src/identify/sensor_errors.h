@@ -10,9 +10,9 @@
 
 namespace taut::identify {
 
-/// Returns the sensor errors with their derivatives of the residuals. `residual`: of the fit, one
-/// per point. Omits errors that `spec` estimates for one of their channels. Needs no new trials,
-/// since computed values follow from the residuals.
+/// Returns the sensor errors with their derivatives of the residuals. `residual`: residuals of the
+/// fit, one per point. Omits errors that `spec` estimates for one of their channels. Needs no new
+/// trials, since computed values follow from the residuals.
 std::vector<FitAlias> SensorErrors(const FitSpec& spec, const std::vector<FitPoint>& points,
                                    const std::vector<double>& residual);
 
