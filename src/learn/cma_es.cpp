@@ -104,7 +104,7 @@ class CmaEs final : public Optimizer {
     C_ = (0.5 * (C_ + C_.transpose())).eval();
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(C_);
     if (solver.info() != Eigen::Success) return;  // keep the previous decomposition
-    // Keeps directions finite that have shrunk to rounding errors.
+    // Limits the scale of directions that have shrunk to rounding errors.
     const double least = 1e-20 * std::fmax(solver.eigenvalues()[n_ - 1], 1e-300);
     D_ = solver.eigenvalues().cwiseMax(least).cwiseSqrt();
     B_ = solver.eigenvectors();

@@ -10,8 +10,9 @@ namespace taut::learn {
 namespace {
 
 /// Hill climbing: each step adds Gaussian noise to the best point so far. The best point of a batch
-/// replaces it if its score is higher. With `adapt: false`, `batch: 1` and `deviation: 0.005`, this
-/// is NTRT's AnnealEvolution, except at bounds: taut mirrors points there, NTRT clamps them.
+/// becomes the best point so far if its score is higher. With `adapt: false`, `batch: 1` and
+/// `deviation: 0.005`, this is NTRT's AnnealEvolution, except at bounds: taut mirrors points there,
+/// NTRT clamps them.
 ///
 /// With `adapt`, sigma follows the share p of successful steps:
 ///   p' = (1 - c) p' + c p,   sigma <- sigma exp((p' - p*) / (d (1 - p*)))

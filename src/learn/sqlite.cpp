@@ -144,7 +144,7 @@ std::string Row::Text(int column) {
   if (!Is(column, SQLITE_TEXT, "text")) return {};
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
-  if (text == nullptr) throw std::bad_alloc();  // SQLite's only reason
+  if (text == nullptr) throw std::bad_alloc();  // SQLite's only reason for null
   return std::string(text, size);
 }
 

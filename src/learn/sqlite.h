@@ -15,9 +15,9 @@ namespace taut::learn {
 class Database {
  public:
   enum class Open { kThatIsThere, kOrMake };
-  /// Opens the file without reading its contents. Does not execute code stored in it. An existing
-  /// file can also be opened in a folder without write permission, if its write-ahead log contains
-  /// no rows.
+  /// Opens the file without reading its contents. Does not execute code stored in the file. An
+  /// existing file can also be opened in a folder without write permission, if its write-ahead log
+  /// contains no rows.
   Database(const std::string& path, Open how);
   /// Opens a database in memory.
   Database() : Database(":memory:", Open::kOrMake) {}
@@ -73,7 +73,7 @@ class Row {
   std::string wrong_;
 };
 
-/// Prepared statement with bound values. The database must outlive it.
+/// Prepared statement with bound values. The database must outlive the statement.
 class Statement {
  public:
   Statement(Database& database, const std::string& sql);
