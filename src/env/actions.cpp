@@ -72,7 +72,7 @@ void Actions::Apply(plant::Loop& loop) {
       const ActuatorDef& actuator =
           plan_.experiment.robot.def.cables[static_cast<std::size_t>(action.cable)].actuator;
       for (std::size_t j = 0; j < lanes_; ++j) {
-        if (x[j] == 0.0) continue;  // keep a start below the actuator's limit, too
+        if (x[j] == 0.0) continue;  // keep a start value below the actuator's limit, too
         base_m[j] = std::max(base_m[j] + scale_m * x[j], actuator.min_rest_length_m);
         rest_m[j] = base_m[j];
       }

@@ -43,7 +43,7 @@ class RewardAndTermination {
 
   /// Accumulated values of a lane's episode.
   struct RewardTotals {
-    bool started = false;  ///< Whether its progress already counts.
+    bool started = false;  ///< Whether the episode's progress already counts.
     Vec3 start_m, goal_m;
     double start_to_goal_m = 0;
     double progress_m = 0, tension_penalty = 0, work_j = 0;  ///< Values already included in

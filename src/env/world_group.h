@@ -78,7 +78,7 @@ class Group {
     EpisodeState now, last;
     bool waits = false;       ///< Whether its episode has ended and the next step begins a new one.
     bool good_action = true;  ///< Whether all values of this step's action were finite.
-    bool begins = false;      ///< Whether `Settle` must initialize it.
+    bool begins = false;      ///< Whether `Settle` must initialize the lane.
   };
 
   /// Serializes all data except the state of the batch.
