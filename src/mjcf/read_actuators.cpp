@@ -16,7 +16,7 @@ struct ActuatorSettings {
   double gain = 1, bias[3] = {0, 0, 0}, lag_s = 1, inherited_range = 0;
 
   bool Lags() const { return dyntype == "filter" || dyntype == "filterexact"; }
-  /// Returns whether both have the same force law.
+  /// Returns whether both settings have the same force law.
   bool Equals(const ActuatorSettings& other) const {
     const bool same_bias = biastype != "affine" || std::equal(bias, bias + 3, other.bias);
     return dyntype == other.dyntype && gaintype == other.gaintype && biastype == other.biastype &&

@@ -28,7 +28,7 @@ std::string Text(const ModelDef& def, const WriteOptions& options);
 /// Friction coefficients for MuJoCo. MuJoCo uses the larger coefficient of two geoms, or the
 /// coefficient of the geom with higher priority.
 struct Friction {
-  /// Two geoms that need a pair element, because their friction does not follow from this rule.
+  /// Two geoms that need a pair element: their friction does not follow from MuJoCo's rule.
   struct Pair {
     std::string geom1, geom2;
     double friction = 0;

@@ -17,7 +17,7 @@ constexpr int kMostFiles = 100;
 /// Limit of the nesting depth, summed over included files, because the reader is recursive. The
 /// library limits the depth of each file only.
 constexpr int kDeepest = 500;
-/// Limited, since the library compares each attribute of an element with all previous ones.
+/// Limit of attributes: the library compares each one with all previous ones of the element.
 constexpr std::size_t kMostAttributes = 200;  // per element
 
 /// Number of elements, comments and declarations of a text, and the largest number of attributes of
