@@ -22,7 +22,7 @@ struct DraftPair {
   int from = 0, to = 0;  ///< Indices of draft nodes.
   Words tags;
   std::string name;   ///< Empty: taut names the pair after its nodes.
-  int structure = 0;  ///< NTRT structure that contains it.
+  int structure = 0;  ///< NTRT structure that contains the pair.
   int number = 0;     ///< Position in that structure's file.
 };
 

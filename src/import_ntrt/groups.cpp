@@ -143,8 +143,8 @@ class Grouper {
     Add(std::move(group), solid.from, {from.full_name});
   }
 
-  /// taut's motors respect the minimum rest length from the start. NTRT's cables jump to it at the
-  /// first command.
+  /// taut's motors respect the minimum rest length from the start. NTRT's cables jump to the
+  /// minimum at the first command.
   void FindShortestRest() {
     shortest_.assign(model_.builders.size(), INFINITY);
     for (const Cable& cable : built_.cables) {

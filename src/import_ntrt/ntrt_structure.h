@@ -62,8 +62,8 @@ struct Parameters {
   bool move_from_to_edge = true, move_to_to_edge = true;
 };
 
-/// Builder of the pairs or nodes that have all tags in `search`. If several match, the last one
-/// applies.
+/// Builder of the pairs or nodes that have all tags in `search`. If several builders match, the
+/// last one applies.
 struct Builder {
   Words search;
   Class kind = Class::kRod;

@@ -1,5 +1,5 @@
 // YAML text of nodes, pairs, parts and placements. A file with several copies becomes one part.
-// Pairs that only some copies have are written outside of it.
+// Pairs that only some copies have are written outside of the part.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

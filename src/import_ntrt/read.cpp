@@ -213,7 +213,7 @@ class Reader {
     open_.push_back(real);
     Build(index, *file);
     open_.pop_back();
-    // Only now, because NTRT adds a child to its parent when the child is complete.
+    // Add the child last, because NTRT adds a child to its parent when the child is complete.
     in_.structure(parent).children.push_back(index);
   }
 
