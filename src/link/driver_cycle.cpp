@@ -29,7 +29,7 @@ std::int16_t Driver::OnWire(int motor) const {
   switch (say_.mode) {
     case Mode::kPosition:
       units = (figures.rest_length_at_reference_m - values_[At(motor)]) / figures.m_per_count;
-      // 0 would command a position that may be far away.
+      // Command the present position, because 0 may be far away.
       if (!std::isfinite(units)) {
         units = static_cast<double>(state_.motors[At(motor)].encoder_counts);
       }
@@ -116,7 +116,7 @@ void Driver::AddReads() {
     group.clear();
   };
   for (int b = 0; b < board_count(); ++b) {
-    // Exclude absent boards: one of them makes the whole group read fail.
+    // Exclude absent boards: one absent board makes the whole group read fail.
     if (state_.boards[static_cast<std::size_t>(b)].there) {
       group.push_back(b);
     } else if (state_.link.cycles % kLookForLost == 0) {
@@ -194,7 +194,8 @@ void Driver::EndStep(UsbIss::State how) {
       if (heard) break;
       ++state_.link.unheard_broadcasts;
       if (step.tries + 1 < kReadTries && !silent) {
-        Step again = step;  // boards that have received it ignore the repeated sequence number
+        Step again = step;  // boards that have received the command ignore its repeated sequence
+                            // number
         ++again.tries;
         steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(step_) + 1, again);
       }

@@ -75,7 +75,7 @@ std::vector<Setting> GainsFor(const ExperimentSpec& experiment) {
   description::MotorSettings common;
   if (const BoardsSpec* const boards = BoardsOf(experiment.controllers)) {
     common = description::CommonMotorSettings(*boards);
-    // A robot's load cells are calibrated.
+    // Omit the experiment's load cell scales: a robot's load cells are calibrated.
     std::erase_if(common, [](const auto& setting) {
       return setting.parameter == board::kNewtonsPerCount ||
              setting.parameter == board::kCountsAtZero;
