@@ -81,7 +81,7 @@ std::string Demo::TakeMessages() {
   const auto add = [&](const std::string& text) { out += (out.empty() ? "[" : ",") + text; };
   std::vector<viewer::Outgoing> messages = session_->TakeMessages();
   if (!std::exchange(greeted_, true)) {
-    // The current scene; earlier messages may contain an older one.
+    // Send the current scene, because earlier messages may contain an older scene.
     add(viewer::Dump(session_->Hello(kClient, kClient)));
     add(session_->scene());
   }

@@ -31,7 +31,7 @@ taut::Overrides ParseLines(std::string_view lines) {
 
 extern "C" {
 
-/// `overrides`: a line NAME=VALUE per parameter. `duration_s`: NaN for the experiment's.
+/// `overrides`: a line NAME=VALUE per parameter. `duration_s`: NaN for the experiment's duration.
 const char* taut_simulate(const char* path, const char* overrides, double duration_s) {
   taut::browser::SimulateInputs inputs{path, ParseLines(overrides), {}};
   if (!std::isnan(duration_s)) inputs.duration_s = duration_s;

@@ -13,8 +13,8 @@ namespace {
 double ReactionZ_n(const CaseResult& result) {
   double sum_n = 0;
   for (const ReactionForce& one : ReactionsOf(result)) sum_n += one.force_n.z;
-  // Reactions include loads on points of the world, such as half of the wind on a bar that ends in
-  // the world. Subtract these loads.
+  // Loads on points of the world, such as half of the wind on a bar that ends there, need equal and
+  // opposite reactions.
   for (const LoadCaseSpec::NodeForce& load : result.loads.forces) {
     if (result.def.nodes[static_cast<std::size_t>(load.node)].body == kWorld) {
       sum_n -= load.force_n.z;

@@ -17,7 +17,7 @@
 namespace taut::cli {
 namespace {
 
-constexpr int kMostCollisions = 20;  ///< Limit of the rows in the list of possible collisions.
+constexpr int kMostCollisions = 20;  ///< A longer list of possible collisions is omitted.
 
 std::string ActuatorText(const ActuatorDef& actuator) {
   if (actuator.kind == ActuatorDef::Kind::kNone) return "-";

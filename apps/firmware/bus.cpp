@@ -53,7 +53,7 @@ void Finish() {
 
 }  // namespace
 
-// Must be short: SCL stays low while it runs, which blocks the bus of all six boards.
+// The interrupt must be short: SCL stays low while it runs, which blocks the bus of all six boards.
 ISR(TWI_vect) {
   const uint8_t status = TWSR & TW_NO_INFO;
   if (status == TW_SR_GCALL_DATA_ACK || status == TW_SR_DATA_ACK) {  // the most frequent case

@@ -59,7 +59,7 @@ class LaneRollouts final : public Rollouts {
  private:
   bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Batches of a thread, used for one group after the other. To create a batch costs as much as
+  /// Batches of a thread, used for one group after the other. Creating a batch takes as long as
   /// seconds of simulation.
   struct Workplace {
     Workplace(const std::shared_ptr<const Model>& model, Simd simd, int lanes)
