@@ -1,4 +1,4 @@
-// Central state of the page, as signals. Parts of the page watch it and never each other.
+// Central state of the page, as signals. Parts of the page watch the signals and never each other.
 import { frameOfScene, type Frame } from "./frame";
 import type { ClientMessage, EventMessage, GainAnswerMessage, HelloMessage, Report, RobotStatus, Scene, SeriesMessage, ServerMessage } from "./protocol";
 import { PROTOCOL_VERSION } from "./protocol";
@@ -61,7 +61,7 @@ export class App {
     return this.movable || this.isRobot || this.hello.value?.mode === "program";
   }
 
-  /** Whether motor boards are driven: there is no pause, and space stops the motors. */
+  /** Whether motor boards are driven: pausing is impossible then, and space stops the motors. */
   get isRobot(): boolean {
     return this.hello.value?.mode === "robot";
   }
@@ -154,7 +154,7 @@ export class App {
     }
   }
 
-  /** A changed parameter causes a new scene; if it looks the same, the 3D view is not rebuilt. */
+  /** A changed parameter causes a new scene; if the scene looks the same, the 3D view is not rebuilt. */
   private receiveScene(scene: Scene): void {
     const before = this.scene.value;
     if (before === null || looks(before) !== looks(scene)) {

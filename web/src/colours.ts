@@ -19,10 +19,10 @@ export interface Palette {
   push: string;
   path: string;
   selected: string;
-  /** plots: set point, the run */
+  /** plots: line of the set point; the next: line of the displayed run */
   setpoint: string;
   own: string;
-  /** compared runs, also as ghosts */
+  /** lines and ghosts of the compared runs */
   runs: readonly string[];
   grid: string;
   further: readonly string[];

@@ -1,4 +1,4 @@
-// Types of the used part of gifenc, which has none.
+// Types for the used part of gifenc, which contains no types.
 declare module "gifenc" {
   export type GifPalette = number[][];
   export interface GifEncoder {

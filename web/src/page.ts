@@ -79,7 +79,7 @@ export function buildPage(root: HTMLElement, app: App, more: More = {}): void {
   app.start();
 }
 
-/** Replaces a page that could not be built by the reason. */
+/** Shows the reason in place of a page that could not be built. */
 export function sayWhyNot(root: HTMLElement, error: unknown): void {
   const reason = error instanceof Error ? error.message : String(error);
   root.replaceChildren(el("main.failure", { role: "alert" }, el("h1", {}, "This page cannot be shown"), el("pre", {}, reason)));

@@ -83,7 +83,7 @@ export type ServerMessage =
   | RobotMessage
   | GainAnswerMessage;
 
-/** Makes this client the driver. If no client drives, the first command of a client does so, too. */
+/** Makes this client the driver. If no client drives, the first client that sends a command becomes the driver. */
 export interface TakeControlMessage {
   type: "take_control";
 }
@@ -99,7 +99,7 @@ export interface ResumeMessage {
 /** Pauses and advances by `count` rows of a trace or steps of a live run. A negative count steps back; in a live run, through the stored past rows. */
 export interface StepMessage {
   type: "step";
-  /** 1 if absent; -1000 to 1000. */
+  /** Number of rows or steps, -1000 to 1000; 1 if absent. */
   count?: number;
 }
 
@@ -111,7 +111,7 @@ export interface ResetMessage {
 /** Simulated seconds per second; 0: as fast as possible. */
 export interface SpeedMessage {
   type: "speed";
-  /** 0, or 0.001 to 1000. */
+  /** Speed factor: 0, or 0.001 to 1000. */
   factor: number;
 }
 
@@ -125,7 +125,7 @@ export interface SeekMessage {
 export interface DragMessage {
   type: "drag";
   node: string;
-  /** In W. */
+  /** Target position, in W. */
   target_m: Vec3;
 }
 
@@ -137,9 +137,9 @@ export interface DropMessage {
 export interface PushMessage {
   type: "push";
   node: string;
-  /** In W. */
+  /** Force, in W. */
   force_n: Vec3;
-  /** 0.001 to 1000. */
+  /** Duration of the push, 0.001 to 1000. */
   duration_s: number;
 }
 
@@ -164,7 +164,7 @@ export interface SetGainMessage {
   value: number;
 }
 
-/** Model: simulates it without gravity and ground, dropped onto the ground from a height of half its size, or settled on the ground. */
+/** Model: simulates the robot without gravity and ground, dropped onto the ground from a height of half its size, or settled on the ground. */
 export interface StartMessage {
   type: "start";
   as: "described" | "dropped" | "settled";
@@ -178,7 +178,7 @@ export interface AnalyzeMessage {
 /** Replay of a shape: displays another shape of the same kind. */
 export interface OpenShapeMessage {
   type: "open_shape";
-  /** From 1. */
+  /** Number of the shape, from 1. */
   number: number;
 }
 
@@ -215,9 +215,9 @@ export interface WantSeriesMessage {
   channel: string;
   /** 0 (default): the displayed run; k: the k-th compared run. */
   source?: number;
-  /** [s] */
+  /** Start of the time span [s]. */
   t0: number;
-  /** [s] */
+  /** End of the time span [s]. */
   t1: number;
   /** Maximum number of points, 2 to 10000. */
   points: number;

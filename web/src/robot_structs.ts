@@ -2,7 +2,7 @@
 
 /** A gain of impedance control that may change while a motor runs. */
 export interface RobotGain {
-  /** As in docs/hardware/parameters.md; ends in its unit. */
+  /** Name as in docs/hardware/parameters.md; ends in the unit. */
   key: string;
   min: number;
   max: number;
@@ -16,7 +16,7 @@ export interface Robot {
   motors: string[];
   /** Gains of each motor. */
   gains: RobotGain[];
-  /** True: poses of bodies are the true poses of a virtual robot. False: they are as in the model, because a real robot does not measure them. */
+  /** True: poses of bodies are the true poses of a virtual robot. False: poses are as in the model, because a real robot does not measure them. */
   true_pose: boolean;
   /** An experiment drives the robot: robot_mode accepts only `off`. */
   experiment: boolean;
@@ -31,7 +31,7 @@ export interface BoardStatus {
   well: boolean;
   /** off, hold, impedance, stopped ... */
   mode: string;
-  /** The references of its encoders are set. */
+  /** The references of the board's encoders are set. */
   referenced: boolean;
   /** The board received no broadcast in time. */
   timeout: boolean;
@@ -59,17 +59,17 @@ export interface MotorStatus {
   tension_n: number;
   /** null: no set point */
   setpoint_n: number;
-  /** Measured by the encoder. */
+  /** Rest length, measured by the encoder. */
   rest_length_m: number;
-  /** Counted from the reference. */
+  /** Encoder counts from the reference. */
   encoder_counts: number;
-  /** -1 to 1; positive winds in. */
+  /** Duty cycle, -1 to 1; positive winds in. */
   duty: number;
   /** Temperature of the winding, computed by a model. */
   temperature_c: number;
   /** Faults as text; empty: none. */
   faults: string;
-  /** Values read from the board; null: not read yet. */
+  /** Gains read from the board; null: not read yet. */
   gains: (number | null)[];
 }
 

@@ -88,7 +88,7 @@ export class SeriesStore {
     const now = source === 0 ? this.inFrame(channel, time_s) : undefined;
     if (now !== undefined) return { time_s, value: now, every: 1 };
     const compared = this.app.scene.value?.compared[source - 1];
-    if (compared && time_s > compared.last_s + ROUNDING_S) return NO_ROW; // its last row is out of date
+    if (compared && time_s > compared.last_s + ROUNDING_S) return NO_ROW; // the run's last row is out of date
     if (!this.app.live || source !== 0) return this.rows.at(channel, source, time_s, drawn);
     if (!this.isInFrames(channel)) return this.keptRow(channel, time_s, drawn);
     // the later of the rows in frames and on the server

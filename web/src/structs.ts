@@ -15,17 +15,17 @@ export interface Shape {
   from_m?: Vec3;
   /** rod: other end of the axis */
   to_m?: Vec3;
-  /** sphere, box */
+  /** sphere, box: center */
   center_m?: Vec3;
-  /** rod, sphere */
+  /** rod, sphere: radius */
   radius_m?: number;
   /** rod: Euler load, if the model defines the cross section */
   buckling_n?: number;
-  /** box: along its axes */
+  /** box: half extents along the box's axes */
   half_extents_m?: Vec3;
-  /** box: q_BodyBox */
+  /** box: rotation from the box's axes to the body's (q_BodyBox) */
   orientation?: Quat;
-  /** hull: its corners */
+  /** hull: corners */
   corners_m?: Vec3[];
 }
 
@@ -36,7 +36,7 @@ export interface Body {
   fixed: boolean;
   /** Center of mass at the start, in W. */
   position_m: Vec3;
-  /** At the start; identity in the described pose. */
+  /** Orientation at the start; identity in the described pose. */
   orientation: Quat;
   shapes: Shape[];
 }
@@ -46,14 +46,14 @@ export interface Node {
   name: string;
   /** Index in Scene.bodies; -1: the world. */
   body: number;
-  /** In the body's frame; in W if body is -1. */
+  /** Position in the body's frame; in W if body is -1. */
   position_m: Vec3;
 }
 
 export interface Attachment {
   /** Index in Scene.bodies; -1: the world. */
   body: number;
-  /** In the body's frame; in W if body is -1. */
+  /** Position in the body's frame; in W if body is -1. */
   position_m: Vec3;
   /** Wheel around which the cable runs; its center is the attachment. */
   wheel?: Wheel;
@@ -63,11 +63,11 @@ export interface Attachment {
 
 /** Wheel around which a cable runs, fixed to the attachment's body. */
 export interface Wheel {
-  /** Unit vector in the body's frame. */
+  /** Unit vector of the axis, in the body's frame. */
   axis: Vec3;
-  /** From the axis to the cable's center line. */
+  /** Distance from the axis to the cable's center line. */
   radius_m: number;
-  /** At the start, about the axis, from the previous to the next point of the cable, with all turns. */
+  /** Angle of wrap at the start, about the axis, from the previous to the next point of the cable, with all turns. */
   angle_rad: number;
 }
 
@@ -79,11 +79,11 @@ export interface Cable {
   /** 0: unknown */
   stiffness_n_per_m: number;
   actuated: boolean;
-  /** Tags of its pair in the model, without its name. */
+  /** Tags of the cable's pair in the model, without the pair's name. */
   tags?: string[];
-  /** For a wrapped cable, whose bends are in frames: their maximum number. */
+  /** Maximum number of bends of a wrapped cable; frames contain the bends. */
   most_bends?: number;
-  /** True: friction divides it into spans, whose tensions are in frames. Otherwise absent. */
+  /** True: friction divides the cable into spans; frames contain their tensions. Otherwise absent. */
   parted?: boolean;
 }
 
@@ -100,7 +100,7 @@ export interface Joint {
   from_m: Vec3;
   /** Point of the joint on body b, in that body's frame. */
   to_m: Vec3;
-  /** Unit vector in body a's frame. */
+  /** Unit vector of the joint's axis, in body a's frame. */
   axis: Vec3;
 }
 
@@ -109,13 +109,13 @@ export interface Terrain {
   name: string;
   /** plane: unit normal out of the solid, in W */
   normal?: Vec3;
-  /** plane: a point of its surface, in W */
+  /** plane: a point of the surface, in W */
   point_m?: Vec3;
-  /** box, in W */
+  /** box: center, in W */
   center_m?: Vec3;
-  /** box: along its axes */
+  /** box: half extents along the box's axes */
   half_extents_m?: Vec3;
-  /** box: q_WBox */
+  /** box: rotation from the box's axes to W (q_WBox) */
   orientation?: Quat;
   /** surface: x, y and z of each corner, in W. Large height fields are thinned to at most 250 000 corners. */
   corners_m?: (number | null)[];
@@ -125,7 +125,7 @@ export interface Terrain {
 
 /** Parameter that set_parameter changes. */
 export interface Parameter {
-  /** friction_scale, body/<name>/mass_kg, push_n ... */
+  /** Name, such as friction_scale, body/<name>/mass_kg or push_n. */
   name: string;
   value: number;
   unit: string;
@@ -140,20 +140,20 @@ export interface Control {
   cable: string;
   /** Determines the set point: tension_offset_n or rest_length_m. */
   kind: "impedance" | "rest_length";
-  /** impedance: T0 */
+  /** impedance: tension offset T0 */
   tension_offset_n?: number;
-  /** impedance: L0 */
+  /** impedance: length offset L0 */
   length_offset_m?: number;
-  /** impedance: K */
+  /** impedance: position gain K */
   position_gain_n_per_m?: number;
-  /** impedance: B */
+  /** impedance: velocity gain B */
   velocity_gain_n_s_per_m?: number;
-  /** rest_length: the command */
+  /** rest_length: commanded rest length */
   rest_length_m?: number;
 }
 
 export interface Channel {
-  /** As in traces: cable/<name>/tension_n. */
+  /** Name as in traces: cable/<name>/tension_n. */
   name: string;
   unit: string;
 }
@@ -170,26 +170,26 @@ export interface Action {
 /** Mode, mechanism or state of self-stress that a trace animates (`taut analyze --out`). */
 export interface ShapeInfo {
   kind: "mode" | "mechanism" | "self_stress";
-  /** From 1. */
+  /** Number of the shape, from 1. */
   number: number;
   /** Number of shapes of this kind in the folder. */
   count: number;
-  /** Of a mode. */
+  /** Of a mode: natural frequency. */
   frequency_hz?: number;
-  /** Of a mode: period in the trace over the natural period. */
+  /** Of a mode: period in the trace, divided by the natural period. */
   slowdown?: number;
-  /** Of a motion: largest displacement in the trace over the robot's size. */
+  /** Of a motion: largest displacement in the trace, divided by the robot's size. */
   amplitude?: number;
 }
 
 /** Mode shape; the largest translation of any body is 1 m. */
 export interface MotionShape {
   kind: "mechanism" | "elastic" | "unstable";
-  /** 0 for mechanisms. */
+  /** Natural frequency; 0 for mechanisms. */
   frequency_hz: number;
-  /** Per body. */
+  /** Translation of each body's center of mass. */
   translation_m: Vec3[];
-  /** Per body. */
+  /** Rotation vector of each body. */
   rotation_rad: Vec3[];
 }
 
@@ -197,15 +197,15 @@ export interface MotionShape {
 export interface Statics {
   /** An equilibrium exists near the described pose. */
   found: boolean;
-  /** Reason, if none was found; else empty. */
+  /** Reason if no equilibrium was found; otherwise empty. */
   reason: string;
   self_stress_states: number;
   /** A state of self-stress has all cables in tension. */
   feasible: boolean;
-  /** Without rigid motions. */
+  /** Number of mechanisms, without rigid motions. */
   mechanisms: number;
   rigid_motions: number;
-  /** Per cable, in the equilibrium. */
+  /** Tension of each cable in the equilibrium. */
   cable_tension_n: (number | null)[];
   /** The first modes other than rigid motions, in the order of their frequencies. */
   modes: MotionShape[];
@@ -220,25 +220,25 @@ export interface Phase {
 
 /** Run with which the displayed run is compared. */
 export interface ComparedRun {
-  /** Distinct name: the name in its metadata, its folder and file, and further components of its path if needed. */
+  /** Distinct name: the name in the run's metadata, its folder and file, and further components of the path if needed. */
   name: string;
-  /** Its metadata mark it as a measurement (key "measured", docs/formats/trace.md). */
+  /** The run's metadata mark the run as a measurement (key "measured", docs/formats/trace.md). */
   measured: boolean;
   /** Channels of the run. */
   channels: Channel[];
-  /** Time of its first row. */
+  /** Time of the run's first row. */
   first_s: number;
-  /** Time of its last row. */
+  /** Time of the run's last row. */
   last_s: number;
-  /** Bodies of its ghost, whose poses are in the section `ghosts` of frames. Empty: no ghost. */
+  /** Bodies of the run's ghost; the section `ghosts` of frames contains their poses. Empty: no ghost. */
   bodies: Body[];
-  /** Cables of its ghost; their body numbers are indices in `bodies`. */
+  /** Cables of the run's ghost; their body numbers are indices in `bodies`. */
   cables: Cable[];
-  /** Sentence about a defect of the trace, or the reason why it has no ghost. */
+  /** Sentence about a defect of the trace, or the reason why the run has no ghost. */
   notice?: string;
 }
 
-/** A channel over a time span, in blocks of `level` rows; at level 1, first, min and max are the value. The level is 1 if the span's rows, with one beyond each end, do not exceed the requested points. In a report it is the level of its Rows. */
+/** A channel over a time span, in blocks of `level` rows; at level 1, first, min and max are the value. The level is 1 if the span's rows, with one beyond each end, do not exceed the requested points. In a report, it is the level of the report's Rows. */
 export interface SeriesData {
   channel: string;
   /** 0: the displayed run; k: the k-th compared run. */
@@ -284,12 +284,12 @@ export interface Report {
   inputs: string;
   /** The content of summary.json, or null. */
   summary: unknown;
-  /** For each compared run, the output of `taut compare --json` for it (a) and the displayed run (b). */
+  /** For each compared run, the output of `taut compare --json` for the compared run (a) and the displayed run (b). */
   comparisons: unknown[];
   /** Rows of the displayed run and of the compared runs. */
   rows: Rows[];
   frame_count: number;
-  /** Numbers per frame. */
+  /** Count of numbers in a frame. */
   frame_values: number;
   /** Float64, little endian: consecutive frames as defined below. All have as many contacts, pushes, bends and spans as the frame with the most; added contacts and pushes have no force, added bends and spans have cable -1. */
   frames_base64: string;
@@ -323,7 +323,7 @@ export interface Scene {
   first_s: number;
   /** Time of the last row. */
   duration_s: number;
-  /** Stiffness of the spring of drag; 0 unless live. */
+  /** Stiffness of the spring that drags a node; 0 unless live. */
   drag_stiffness_n_per_m: number;
   /** Name of the displayed run among the compared runs. */
   run_name?: string;

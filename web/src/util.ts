@@ -166,7 +166,7 @@ export const memory = {
     try {
       localStorage.setItem(`taut.${key}`, value);
     } catch {
-      // then it is not stored
+      // without storage, the value is lost
     }
   },
 };

@@ -99,7 +99,7 @@ export class Editor {
     this.drawLines();
   }
 
-  /** Tab inserts spaces, as required by YAML; after escape, it leaves the text. */
+  /** Tab inserts spaces, as required by YAML; after Escape, Tab moves the focus out of the text. */
   private key(event: KeyboardEvent): void {
     if (event.key === "Escape") this.area.dataset["leaves"] = "yes";
     else if (event.key !== "Tab" || this.area.dataset["leaves"]) delete this.area.dataset["leaves"];

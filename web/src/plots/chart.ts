@@ -12,9 +12,9 @@ import { coarseness, type Figure, type Filled, ink, isDashed, TENSION, valueRang
 import { NearLine } from "./near_line";
 
 const SYNC = "taut";
-const MOST_IN_KEY = 12; // lines of an overlay; the box at the mouse names them, too
+const MOST_IN_KEY = 12; // maximum number of lines in the legend; the box at the mouse names the lines, too
 const DIGITS = 4; // significant digits of a value beside a plot
-const AWAY = 0.01; // relative to the window: a row farther from the displayed time is labeled with its time
+const AWAY = 0.01; // share of the window: a row farther from the displayed time is labeled with its time
 
 export class Chart {
   readonly element: HTMLElement;
@@ -32,7 +32,7 @@ export class Chart {
   private near: NearLine | null = null;
   private shared: [number, number] | null = null;
   private span: readonly [number, number] = [0, 1];
-  /** Whether it has axis labels. */
+  /** Whether the chart has axis labels. */
   private readonly isLarge: boolean;
 
   constructor(
@@ -205,7 +205,7 @@ export class Chart {
     return plot;
   }
 
-  /** Emphasizes the line of the cable under the mouse, or of the selected one. */
+  /** Emphasizes the line of the cable under the mouse, or of the selected cable. */
   private markCable(): void {
     const scene = this.app.scene.value;
     const shown = this.app.hover.value ?? this.app.selection.value;
@@ -246,7 +246,7 @@ function yLabel({ title, unit, lines, group }: Figure): string {
   return unit === "" ? name : `${name} [${unit}]`;
 }
 
-/** uPlot requires one list of times for all lines; two recordings have two. */
+/** Merges the times of all lines: uPlot requires one list, but two recordings have two lists. */
 function aligned(data: readonly Points[]): uPlot.AlignedData {
   const tables = data
     .filter((points) => points.t.length > 0)

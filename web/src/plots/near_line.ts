@@ -13,7 +13,7 @@ export interface PlotLine {
   colour: string;
 }
 
-/** Each line has two series, minimum and maximum, after that of the times. */
+/** Returns the two series of a line, minimum and maximum; series 0 contains the times. */
 export const seriesOf = (line: number): [number, number] => [2 * line + 1, 2 * line + 2];
 
 export class NearLine {

@@ -66,7 +66,7 @@ export class PlotPanel {
         if (entry.isIntersecting) this.visible.add(chart);
         else this.visible.delete(chart);
       }
-      this.mark(); // its values date from when it was last visible
+      this.mark(); // the values in the chart may be old, because it was not visible
       this.refresh();
     }, { rootMargin: "1500px 0px" });
     app.scene.watch(() => this.rebuild());

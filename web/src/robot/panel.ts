@@ -79,7 +79,7 @@ function table(heads: readonly string[], titles: readonly string[] = []) {
       });
     });
   };
-  /** Marks those columns as idle, counted from `first`, that do not matter: they may be hidden. */
+  /** Marks columns that do not matter as idle, counted from `first`: they may be hidden. */
   const mark = (first: number, matter: readonly boolean[]) => {
     for (const row of element.rows) matter.forEach((matters, i) => row.cells[first + i]?.classList.toggle("idle", !matters));
   };

@@ -36,7 +36,7 @@ export class Arrows {
     this.count = 0;
   }
 
-  /** Adds an arrow from `tail`, or, if `ends` is set, one that ends there. */
+  /** Adds an arrow that begins at `tail`, or that ends there if `ends` is set. */
   add(tail: Vector3, vector_m: Vector3, ends = false): void {
     const length_m = vector_m.length();
     if (!(length_m > 0) || this.count >= CAPACITY) return;

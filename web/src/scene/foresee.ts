@@ -34,7 +34,7 @@ export function foresee(app: App, store: SeriesStore, view: View): void {
         if (--missing > 0 || view.world?.scene !== scene) return;
         const [x, y, z] = parts as [Points, Points, Points];
         view.world.path.set(x.t, x.t.map((_, i) => new Vector3(x.first[i] ?? 0, y.first[i] ?? 0, z.first[i] ?? 0)));
-        view.following.value = !view.fitPath(true); // of a longer path, the part around the robot
+        view.following.value = !view.fitPath(true); // if the path is too long, the camera follows the robot
         view.invalidate();
       }),
     );

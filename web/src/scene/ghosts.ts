@@ -113,7 +113,7 @@ export class Ghost {
     this.cables.forEach((cable, i) => {
       if (cable.attachments.length < 2) return;
       const points = Array.from({ length: pointCount(cable) }, () => new Vector3());
-      layCable(frame, this.poses, cable, this.from_cable + i, NaN, points); // its length is not in the frame
+      layCable(frame, this.poses, cable, this.from_cable + i, NaN, points); // frames lack the lengths of ghosts' cables
       points.forEach((point, k) => {
         if (k > 0) at = write(point, positions, at);
         if (k + 1 < points.length) at = write(point, positions, at);

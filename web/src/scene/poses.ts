@@ -13,7 +13,7 @@ export function worldPoint(frame: Poses, body: number, p: Vec3, out: Vector3): V
   const b = frame.bodies;
   const at = body * VALUES.bodies;
   const [w, x, y, z] = [b[at + 3]!, b[at + 4]!, b[at + 5]!, b[at + 6]!];
-  // p + 2 q x (q x p + w p)
+  // rotated vector: p + 2 q x (q x p + w p)
   const cx = y * p[2] - z * p[1] + w * p[0];
   const cy = z * p[0] - x * p[2] + w * p[1];
   const cz = x * p[1] - y * p[0] + w * p[2];
