@@ -307,7 +307,7 @@ int Main(int argc, char** argv) {
       ->option_text("NUMBER ...");
   CLI::Option* measure =
       app.add_option("--measure", arguments.measure_s,
-                     "Benchmark instead: emulated time [s] at full speed with a busy host")
+                     "Run a benchmark instead: emulated time [s], at full speed with a busy host")
           ->check(CLI::Range(0.01, 3600.0))
           ->option_text("SECONDS");
   CLI::Option* run = app.add_flag(

@@ -122,7 +122,7 @@ void AddEquilibrium(Type& type) {
       "found", [](const Analysis& a) { return a.at.found; }, "Whether an equilibrium was found.");
   type.def_property_readonly(
       "why", [](const Analysis& a) { return a.at.why; },
-      "Reason if no equilibrium was found; else empty.");
+      "Reason if no equilibrium was found; otherwise empty.");
   type.def_property_readonly("load_case", [](const Analysis& a) { return a.loads.name; });
   type.def_property_readonly(
       "left_out", [](const Analysis& a) { return a.at.left_out; },
@@ -177,7 +177,7 @@ void AddEquilibrium(Type& type) {
       "m].");
   type.def_property_readonly(
       "contacts", [](const Analysis& a) { return ContactsOf(a.at.contacts); },
-      "Contacts that carry load, as a dict in the form of `WorldBatch.contacts`; normal forces "
+      "Contacts that carry load, as a dict in the form of `Batch.contacts`; normal forces "
       "only.");
   type.def_property_readonly(
       "residual_n", [](const Analysis& a) { return a.at.residual_n; },
@@ -284,7 +284,7 @@ void AddForces(Type& type) {
         for (const SelfStress& state : a.forces.self_stress) *to++ = state.feasible;
         return all;
       },
-      "(states,) bool: all cables in tension, no contact pulls.");
+      "(states,) bool: whether all cables are in tension and no contact pulls.");
   type.def_property_readonly(
       "mechanism_translation_m",
       [](const Analysis& a) {

@@ -142,8 +142,8 @@ void AddCommands(BatchType& type) {
         });
       },
       py::arg("rest_length_m"), py::arg("world") = py::none(),
-      "Sets the rest-length targets of the actuators, until changed: an array (worlds, cables), or "
-      "(cables,) for one `world` [m].");
+      "Sets the rest-length targets of the actuators [m]: an array (worlds, cables), or (cables,) "
+      "for one `world`. Targets hold until they are changed.");
   type.def(
       "set_node_force",
       [](Worlds& worlds, py::ssize_t world, py::ssize_t node, const py::object& force_n) {
@@ -154,7 +154,7 @@ void AddCommands(BatchType& type) {
         worlds.With([&](WorldBatch& b) { b.SetNodeForce(w, n, force); });
       },
       py::arg("world"), py::arg("node"), py::arg("force_n"),
-      "Sets an external force on a node, until changed: (3,), in W [N].");
+      "Sets an external force on a node: (3,), in W [N]. The force acts until it is changed.");
   type.def(
       "set_parameter",
       [](Worlds& worlds, const std::string& name, const py::object& values, py::ssize_t index) {

@@ -163,8 +163,8 @@ void AddSimulation(py::module_& module) {
   type.def(
       "run_until", &RunUntil, py::arg("time_s"),
       "Advances each world until its time is at least `time_s`; it may stop up to one step later. "
-      "Worlds that are already there do not move. Other Python threads run meanwhile; Ctrl-C ends "
-      "the call.");
+      "Worlds that have reached this time do not advance. Other Python threads run meanwhile; "
+      "Ctrl-C ends the call.");
   AddReadings(type);
   AddCommands(type);
   AddStates(type);

@@ -135,8 +135,8 @@ void AddCommands(SimulationType& type) {
       },
       py::arg("cable"), py::arg("rest_length_m"), py::arg("world") = py::none(),
       "Commands a cable's rest length [m], in one `world` or in all. A position controller of the "
-      "cable holds it instead of following its program; other controllers of the cable overwrite "
-      "it at their next tick.");
+      "cable holds this rest length instead of following its program; other controllers of the "
+      "cable overwrite the command at their next tick.");
   type.def(
       "set_node_force",
       [](S& shared, const py::object& node, const py::object& force_n,

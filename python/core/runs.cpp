@@ -228,7 +228,7 @@ void AddRuns(py::module_& module) {
       .def_property_readonly("simulated_s", [](const Ran& r) { return r.summary.simulated_s; })
       .def_property_readonly(
           "status", [](const Ran& r) { return r.summary.status_text; },
-          "Empty for a good run; else the errors.")
+          "Errors of the run; empty for a good run.")
       .def_property_readonly(
           "overloads",
           [](const Ran& r) {

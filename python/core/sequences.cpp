@@ -1,4 +1,4 @@
-// `WorldBatch.rollout`: sequences of rest-length targets in parallel worlds, for model predictive
+// `Batch.rollout`: sequences of rest-length targets in parallel worlds, for model predictive
 // control.
 #include <algorithm>
 #include <chrono>

@@ -168,8 +168,8 @@ void AddStudies(py::module_& module) {
                 r.ExperimentWith(EvaluationOf(r, evaluation).values));
           },
           py::arg("evaluation") = py::none(),
-          "Returns the experiment with the parameters of an evaluation, by index; None: of the "
-          "best. For `taut.run`.")
+          "Returns the experiment with the parameters of an evaluation, given by index; "
+          "None: the best evaluation. For `taut.run`.")
       .def("__len__", [](const StudyResult& r) { return r.evaluations.size(); });
 
   module.def(

@@ -169,7 +169,7 @@ inline py::bytes BytesFrom(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Returns a dict of arrays in the form of `WorldBatch.contacts`.
+/// Returns a dict of arrays in the form of `Batch.contacts`.
 py::dict ContactsOf(const std::vector<ContactState>& touching);
 
 /// Returns the names of the elements, in order.

@@ -105,9 +105,9 @@ std::string Comment(const std::string& text) {
 std::string HeadText(const std::string& path, const NtrtOptions& options, const std::string& name,
                      const NtrtImport& import) {
   const std::string file = std::filesystem::path(path).filename().string();
-  std::string text = Comment("Imported from NTRT's " + file + ", whose unit of length is " +
-                             NumberText(options.length_unit_m) +
-                             " m; y is up there, so its (z, x, y) become (x, y, z).");
+  std::string text = Comment("Imported from NTRT's " + file +
+                             " (unit of length: " + NumberText(options.length_unit_m) +
+                             " m). NTRT's y axis points up: its (z, x, y) become (x, y, z).");
   for (const std::string& law : import.as_ntrt) text += Comment("Same as NTRT: " + law + ".");
   for (const std::string& law : import.different)
     text += Comment("Different from NTRT: " + law + ".");
