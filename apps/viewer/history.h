@@ -36,8 +36,8 @@ class History {
   std::size_t RowAt(double time_s) const;
   /// Returns the row for a past time; nothing if the time is the present, `now_s`.
   std::optional<std::size_t> PastRow(double time_s, double now_s) const;
-  /// Returns the row `count` rows after `row`. An empty optional stands for the present, as
-  /// argument and as result.
+  /// Returns the row `count` rows after `row`. An empty optional means the present, as argument and
+  /// as result.
   std::optional<std::size_t> Step(std::optional<std::size_t> row, int count, double now_s) const;
   /// Sets the state of `frame` to a row, but not its speed, pause and driver.
   void Show(std::size_t row, Frame& frame) const;

@@ -54,7 +54,7 @@ class LiveSession final : public Session {
   /// Sets the times, in increasing order, at which to record the state, for this run and after
   /// restarts.
   void MarkAt(std::vector<double> times_s);
-  /// Returns the states recorded in this run: one per time of `MarkAt` that it has reached.
+  /// Returns the states recorded in this run: one per time of `MarkAt` that was reached.
   const std::vector<StateMark>& marks() const { return marks_; }
   /// Returns whether the user pushed, pulled or tuned since the start, so that the files do not
   /// reproduce the state.

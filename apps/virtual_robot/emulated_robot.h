@@ -41,7 +41,7 @@ struct RobotOptions {
 class Robot {
  public:
   /// Powers the robot on at time 0, with one board for two motors of `plant`, which must outlive
-  /// it.
+  /// the robot.
   Robot(Plant& plant, const RobotOptions& options);
   ~Robot();
   Robot(const Robot&) = delete;

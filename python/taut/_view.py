@@ -21,7 +21,7 @@ def _command() -> list[str]:
     if hasattr(_core, "main"):  # a wheel contains the command
         return [sys.executable, "-m", "taut"]
     package = pathlib.Path(_core.__file__).resolve().parent
-    # A build folder (build/release/python/taut) has the command beside python; an installed module, on the PATH.
+    # In a build folder, the command is next to the folder python; an installed command is on the PATH.
     beside = package.parent.parent / "taut"
     found = str(beside) if beside.is_file() else shutil.which("taut")
     if not found:

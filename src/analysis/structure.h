@@ -92,8 +92,8 @@ class Structure {
   void Measure();
   /// Records that a force acts on a body at this point.
   void Acts(const Anchor& anchor);
-  /// Records that rotations of a direction fixed in the body are resisted. A zero direction stands
-  /// for all rotations.
+  /// Records that rotations of a direction fixed in the body are resisted. A zero direction means
+  /// all rotations.
   void ResistsTurns(const Anchor& anchor, const Vec3& direction);
 
   const ModelDef& def_;

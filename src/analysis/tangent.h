@@ -19,7 +19,7 @@ struct HeldStiffness {
 HeldStiffness StiffnessAsDescribed(const Structure& structure);
 
 /// Returns the mass matrix in the described pose. Includes the consistent mass of members that have
-/// one.
+/// a mass.
 Eigen::MatrixXd MassMatrix(const ModelDef& def, const Structure& structure);
 
 /// Returns the directions that joint rows and loaded contact points block, as orthonormal columns

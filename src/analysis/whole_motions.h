@@ -11,7 +11,7 @@ namespace taut::analysis {
 /// world.
 struct Component {
   std::vector<std::size_t> bodies;  ///< Indices among the moving bodies.
-  Vec3 middle_m;                    ///< Mean of their centers of mass.
+  Vec3 middle_m;                    ///< Mean of the bodies' centers of mass.
   std::vector<Vec3> held_points_m;  ///< Ends of cables, bars and distance joints in the world.
   std::vector<Vec3> held_axes;      ///< Axes of wheels in the world.
   std::vector<Vec3> joints_m;       ///< Points of other joints with the world.

@@ -48,8 +48,8 @@ Moments FiniteMoments(const double* a, const double* b, std::size_t count) {
   return m;
 }
 
-/// Computes correlations of a fixed range of a with shifted b. If all rows are finite, it computes
-/// the part of a once, and sums with four accumulators, which compilers vectorize.
+/// Computes correlations of a fixed range of a with shifted b. If all rows are finite, the part of
+/// a is computed once, and four accumulators sum, so that compilers vectorize the loop.
 class Correlator {
  public:
   Correlator(const std::vector<double>& a, const std::vector<double>& b, std::size_t begin,

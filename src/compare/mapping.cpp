@@ -19,7 +19,7 @@ using Json = MappingJson::Json;
 
 constexpr const char* kAxisNames[] = {"x", "y", "z"};
 constexpr std::size_t kMaxBytes = 10'000'000;
-/// Placeholder for the axis in a name; the second one stands for X, Y, Z.
+/// Placeholders for the axis in a name: x, y, z or X, Y, Z.
 constexpr std::string_view kAxisMark = "{axis}", kCapitalMark = "{AXIS}";
 
 /// Axis of the file that corresponds to an axis of taut, and its sign.

@@ -11,7 +11,7 @@
 namespace taut::compare {
 
 /// Returns the beginning of a page, up to its first section, in the look of the viewer's pages.
-/// `kind`: word beside the title, such as "fit".
+/// `kind`: word next to the title, such as "fit".
 std::string PageHead(const std::string& title, const std::string& kind);
 
 /// Headline result at the top of a page.

@@ -18,8 +18,8 @@ class Actions {
   /// later; until then, they are 0.
   void Begin(int lane, const Commands& commands, int delay);
 
-  /// Stores the next action of a lane; null stands for zeros. Replaces values that are not finite
-  /// by 0. Returns false if it replaced any.
+  /// Stores the next action of a lane; null: zeros. Replaces values that are not finite by 0.
+  /// Returns false if it replaced any value.
   template <class T>
   bool Read(int lane, const T* action);
   /// Applies the actions of all lanes to commands and controllers. Call after `Read` for all lanes.

@@ -226,8 +226,8 @@ class LaneEnv final : public Env {
     return good;
   }
 
-  /// Simulates one period of all groups. Polls `keep_going` between rounds. Returns false if it
-  /// stopped the step.
+  /// Simulates one period of all groups. Polls `keep_going` between rounds. Returns false if
+  /// `keep_going` stopped the step.
   template <class Work>
   bool StepGroups(const Work& work) {
     const auto& keep_going = plan_->options.keep_going;

@@ -45,8 +45,8 @@ class Group {
   bool Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place, std::string& failed);
   void Settle();
 
-  /// Simulates a period: actions, steps, rewards, termination, observations. Returns false if it
-  /// paused at the deadline. The next call then continues the period.
+  /// Simulates a period: actions, steps, rewards, termination, observations. Returns false if the
+  /// period paused at the deadline. The next call then continues the period.
   template <class T>
   bool Step(const GroupRows<T>& rows, Starts& starts, Place& place, const Deadline& deadline);
   /// Abandons a paused period. Call this before resetting all worlds.

@@ -21,8 +21,8 @@ double LogGamma(double x) {
   return (x - 0.5) * math::Log(x) - x + half_log_two_pi + series - math::Log(product);
 }
 
-/// Regularized incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a). For x < a + 1 it uses
-/// the series of 1 - Q (6.5.29), otherwise the continued fraction (6.5.31) with Lentz's method.
+/// Regularized incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a): for x < a + 1 by the
+/// series of 1 - Q (6.5.29), otherwise by the continued fraction (6.5.31) with Lentz's method.
 double UpperGamma(double a, double x) {
   if (x <= 0) return 1;
   const double front = math::Exp(a * math::Log(x) - x - LogGamma(a));

@@ -25,7 +25,7 @@ constexpr double kLeastRise = 0.25, kMostRise = 4;
 
 bool Estimated(const ParameterVerdict& v) { return v.kind == Determined::kEstimated; }
 
-/// Point one standard error of a parameter away.
+/// Point at a distance of one standard error of one parameter from the fit.
 struct PointAway {
   std::vector<double> values;
   /// Whether all other parameters follow as in a refit. Confounded parameters do not follow,
@@ -33,8 +33,9 @@ struct PointAway {
   bool refitted = true;
 };
 
-/// Returns the point one standard error of parameter `j` away, in the direction of `sign`. The
-/// other parameters follow as in a refit (eq. F.13). Returns nothing beyond the bounds.
+/// Returns the point at a distance of one standard error of parameter `j` from the fit, in the
+/// direction of `sign`. The other parameters follow as in a refit (eq. F.13). Returns nothing
+/// beyond the bounds.
 std::optional<PointAway> OneErrorAway(const FitProblem& problem, const FitVerdict& verdict,
                                       std::size_t j, double sign) {
   const std::vector<double>& covariance = verdict.identifiability.covariance;

@@ -18,8 +18,8 @@ void ContradictByGroups(const FitProblem& problem, FitVerdict& verdict);
 /// Adds contradictions by other starts that ended at a similar cost but other values.
 void ContradictByStarts(const FitProblem& problem, const FitResult& fit, FitVerdict& verdict);
 
-/// Computes two points per estimate, one standard error away with all other parameters refitted to
-/// first order. Adds a contradiction if chi-square does not rise by about 1 (eq. F.13a).
+/// Computes two points per estimate, one standard error from the fit, with all others refitted to
+/// first order. Adds a contradiction unless chi-square rises by about 1 (eq. F.13a).
 void ContradictByCost(const FitProblem& problem, FitVerdict& verdict);
 
 /// Adds contradictions by experiments whose fits alone disagree.

@@ -47,16 +47,16 @@ struct ColumnTask {
   double share = 1.0;
 };
 
-/// Computes points. `owners`: per point, `ColumnTask::owner`. Returns false if it was stopped.
+/// Computes points. `owners`: per point, `ColumnTask::owner`. Returns false if stopped.
 using ComputePoints =
     std::function<bool(const std::vector<std::vector<double>>& points,
                        const std::vector<std::size_t>& owners, std::vector<Residuals>& answers)>;
 
 /// Computes and checks the columns of all tasks, with few calls of `compute`. If the slopes for the
-/// step and for half of it disagree, the column is repeated with a quarter of the step, up to five
-/// times. A shorter step is kept if its two slopes agree and if the step is at least the standard
-/// error implied by the slope. Otherwise the column is reported as a kink. Returns nothing if it
-/// was stopped.
+/// step and for half of the step disagree, the column is repeated with a quarter of the step, up to
+/// five times. A shorter step is kept if its two slopes agree and if the step is at least the
+/// standard error implied by the slope. Otherwise the column is reported as a kink. Returns nothing
+/// if stopped.
 std::optional<std::vector<FitColumn>> FindColumns(const FitProblem& problem,
                                                   std::span<const ColumnTask> tasks,
                                                   const ComputePoints& compute);

@@ -30,7 +30,7 @@ inline double PriorMean(const FitParameter& parameter) {
 }
 
 /// Returns the validated residuals of `problem.forward`. `failed` contains errors. Returns nothing
-/// if it was stopped.
+/// if the computation was stopped.
 std::optional<std::vector<Residuals>> Compute(const FitProblem& problem,
                                               std::span<const std::vector<double>> points);
 

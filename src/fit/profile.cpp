@@ -25,7 +25,7 @@ class Profile {
     held_[parameter] = true;
   }
 
-  /// Computes the central point. Returns false if it was stopped or if the fit cannot be computed.
+  /// Computes the central point. Returns false if stopped or if the fit cannot be computed.
   bool Centre(const std::vector<double>& values) {
     std::vector<bool> all(values.size(), true);
     const std::vector<FitJob> jobs = {{values, all, {}}};

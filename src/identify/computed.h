@@ -41,8 +41,8 @@ std::vector<ChannelInfo> DynamicChannels(const ExperimentSpec& experiment);
 
 /// Computes static equilibria, at increasing times or for all load cases. Each search starts from
 /// the previous equilibrium. The `time` of a load case is its number, starting at 1. Calls `take`
-/// for each equilibrium, until it returns false. Returns an error message if one was not found,
-/// otherwise an empty text.
+/// for each equilibrium, until it returns false. Returns an error message if an equilibrium was not
+/// found, otherwise an empty text.
 using RestTaker = std::function<bool(double time, const LoadCaseSpec&, const Equilibrium&)>;
 std::string EachRest(const ExperimentSpec& experiment, FitForward forward,
                      const std::vector<double>& moments_s, const RestTaker& take);

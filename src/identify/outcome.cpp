@@ -11,7 +11,7 @@
 namespace taut {
 namespace {
 
-/// Returns the residuals at one point. Returns an empty list if it could not be computed.
+/// Returns the residuals at one point. Returns an empty list if they could not be computed.
 std::vector<double> At(const FitProblem& problem, const std::vector<double>& values) {
   const std::vector<std::vector<double>> points{values};
   const auto answers = problem.forward(points);

@@ -115,8 +115,8 @@ void Driver::LookAt(int board, const BoardView& before) {
   }
 }
 
-/// Detects cut cables and load cells with a constant reading. Boards detect these only after they
-/// have wound in a long distance.
+/// Detects cut cables and load cells with a constant reading. Boards detect these faults only after
+/// they have wound in a long distance.
 void Driver::LookAtCable(int motor) {
   CableWatch& watch = cable_watches_[At(motor)];
   const MotorView& now = state_.motors[At(motor)];

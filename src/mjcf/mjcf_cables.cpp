@@ -218,7 +218,7 @@ class CableBuilder {
     b_.made.robot.cable_sources.push_back(tendon.at);
   }
 
-  /// Returns the tendon's name, or a similar one if it is not a valid name of a pair.
+  /// Returns the tendon's name, or a similar name that is valid for a pair.
   std::string NameOf(const Tendon& tendon) const {
     std::string by_nodes, shorter, placement;
     bool inside = true;

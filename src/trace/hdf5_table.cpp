@@ -73,7 +73,7 @@ void SendTable(const std::string& path, const std::string& name, const TableBudg
 
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
                                        TableBudget& budget, Diagnostics& out) {
-  // Read the file first: this reports the operating system's message if it cannot be opened.
+  // Read the file first, to report the system's message if the file cannot be opened.
   constexpr std::size_t kMostBytes = std::size_t{1} << 30;
   const auto bytes = base::ReadInputFile(path, kMostBytes, "use fewer numbers", out);
   if (!bytes) return std::nullopt;

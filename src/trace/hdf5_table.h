@@ -16,8 +16,8 @@ struct Hdf5Table {
 };
 
 /// Reads a two-dimensional dataset of any number type, and adds the number of values to `budget`.
-/// Returns nothing and reports an error if it is missing or exceeds the budget. A child process
-/// opens the file, as for traces (readers.h).
+/// Returns nothing and reports an error if the dataset is missing or exceeds the budget. A child
+/// process opens the file, as for traces (readers.h).
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
                                        TableBudget& budget, Diagnostics& out);
 

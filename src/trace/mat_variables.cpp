@@ -181,7 +181,7 @@ bool IsMatFile(const std::string& path) {
 
 std::optional<std::vector<MatVariable>> ReadMatVariables(const std::string& path,
                                                          Diagnostics& out) {
-  // Read the file first: this reports the operating system's message if it cannot be opened.
+  // Read the file first, to report the system's message if the file cannot be opened.
   const auto bytes = base::ReadInputFile(path, kMostFileBytes, "save fewer variables", out);
   if (!bytes) return std::nullopt;
   if (!bytes->starts_with("MATLAB 7.3 MAT-file")) {

@@ -37,7 +37,7 @@ inline constexpr std::size_t kMostMcapNameBytes = 1000;
 
 /// Reads a file record by record. Compressed chunks are an error, whose message contains the
 /// remedy.
-/// From a truncated file, it reads the messages before the cut.
+/// From a truncated file, the reader returns the messages before the cut.
 class McapReader {
  public:
   McapReader(std::string path, Diagnostics& out) : path_(std::move(path)), out_(out) {}

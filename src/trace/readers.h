@@ -21,8 +21,8 @@ std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out);
 /// except in gaps. Times since 1970 are shifted to begin at 0 s.
 std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out);
 
-/// Reads the variables of a MATLAB file (`IsMatFile`) as columns. Of the layout, it uses only the
-/// clock and `ignore`.
+/// Reads the variables of a MATLAB file (`IsMatFile`) as columns. Uses only the clock and `ignore`
+/// of the layout.
 std::optional<Trace> ReadMatTable(const std::string& path, const TableLayout& layout,
                                   Diagnostics& out);
 

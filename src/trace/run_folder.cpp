@@ -97,8 +97,8 @@ std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
   return pieces;
 }
 
-/// Returns unpublished input files in the trace's folder. They exist while a run replaces another
-/// one: from the first row of its trace until the old files are removed.
+/// Returns unpublished input files in the trace's folder. They exist while a run replaces an
+/// earlier run: from the first row of the new trace until the old files are removed.
 std::vector<Piece> UnnamedInputs(const std::string& trace) {
   const fs::path inputs = BesideTrace(trace, "inputs", ".yaml");
   const std::string name = inputs.filename().string() + ".";

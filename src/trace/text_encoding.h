@@ -25,7 +25,7 @@ class ToUtf8 {
   TextEncoding encoding_;
   Form form_ = Form::kUnknown;
   std::string rest_;   ///< Bytes of an incomplete unit or byte order mark.
-  char32_t high_ = 0;  ///< High surrogate that waits for its low one.
+  char32_t high_ = 0;  ///< High surrogate before its low surrogate arrives.
 };
 
 /// Returns whether a text is valid UTF-8.

@@ -1,4 +1,4 @@
-// The lines of an overlay plot near the mouse: the nearest one stands out, a box lists it with its neighbors.
+// Lines of an overlay plot near the mouse: the nearest line is emphasized, and a box lists it with its neighbors.
 import type uPlot from "uplot";
 import { el, number } from "../util";
 

@@ -29,7 +29,7 @@ export class ModePlayer {
   constructor(private readonly app: App, private readonly view: View) {
     app.scene.watch(() => this.stop());
     app.frame.watch((frame) => {
-      if (frame && frame.paused === 0 && app.movable) this.stop(); // the simulation goes on
+      if (frame && frame.paused === 0 && app.movable) this.stop(); // the simulation continues
     });
   }
 
