@@ -15,7 +15,7 @@ namespace taut::cli {
 
 struct LinearArguments {
   std::string file;                                            ///< HDF5 file to write; empty: none.
-  std::vector<std::pair<std::string, std::string>> responses;  ///< Input, output.
+  std::vector<std::pair<std::string, std::string>> responses;  ///< Pairs of an input and an output.
   double from_hz = 0.1;
   std::optional<double> to_hz;  ///< Nothing: half the tick frequency.
   int points = 40;

@@ -48,7 +48,7 @@ inline const char* WayText(EquilibriumWay way) {
 inline int MovesMost(const Mode& mode) {
   for (const std::vector<Vec3>* const way : {&mode.translation_m, &mode.turn_rad}) {
     int most = -1;
-    double largest = 1e-18;  // squared; above round-off
+    double largest = 1e-18;  // square of a displacement above round-off
     for (std::size_t b = 0; b < way->size(); ++b) {
       const Vec3& t = (*way)[b];
       const double size = t.x * t.x + t.y * t.y + t.z * t.z;

@@ -84,7 +84,7 @@ std::string AnalysisJson(const AnalysisResult& result, int most_modes);
 
 /// Force of a support, an anchored body, a cable's end in the world, or the ground on the robot.
 struct ReactionForce {
-  const char* kind;  ///< "support", "anchor", "node", "ground".
+  const char* kind;  ///< "support", "anchor", "node" or "ground".
   std::string name;  ///< Name of the joint, body or node.
   Vec3 point_m, force_n, torque_n_m;
 };

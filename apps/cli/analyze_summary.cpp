@@ -55,7 +55,7 @@ std::string VerdictOn(const AnalysisResult& result) {
   const Standing standing = StandingOf(worst);
   constexpr const char* kTexts[] = {" stands", " stands, but mechanisms move freely",
                                     " does not stand: the equilibrium is unstable",
-                                    " does not stand: no equilibrium"};  // by Standing
+                                    " does not stand: no equilibrium"};  // indexed by Standing
   std::string text = result.robot.def.name + kTexts[static_cast<int>(standing)];
   if (result.cases.size() > 1) text += " (load case " + worst.loads.name + ")";
   std::string details;

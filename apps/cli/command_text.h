@@ -11,8 +11,8 @@ namespace taut::cli {
 
 /// Flag or positional argument.
 struct WordText {
-  std::string name;    ///< "--step_s", "FILE".
-  std::string letter;  ///< "-h"; empty: none.
+  std::string name;    ///< Such as "--step_s" or "FILE".
+  std::string letter;  ///< Short form, such as "-h"; empty: none.
   /// Placeholder of a flag's value: "S", "FILE", "FOLDER", "index|none|segments". For an argument:
   /// its allowed words, if there is a fixed set. Empty: no value.
   std::string value;
@@ -24,7 +24,7 @@ struct WordText {
 };
 
 struct CommandText {
-  std::string name;   ///< "taut gait export".
+  std::string name;   ///< Complete name, such as "taut gait export".
   std::string group;  ///< Heading of the command in the help text of its parent.
   std::string what;   ///< Purpose, as one sentence.
   std::string more;   ///< Examples and further information.

@@ -83,7 +83,7 @@ int RunCompare(CompareArguments given) {
   const std::vector<std::string> exceeded =
       limited && comparable ? ExceededLimits(comparison, given.limits) : std::vector<std::string>();
   if (limited && comparable) {
-    std::FILE* const to = given.json ? stderr : stdout;  // keeps stdout pure JSON
+    std::FILE* const to = given.json ? stderr : stdout;  // stdout contains only the JSON
     const std::size_t most = given.tables || exceeded.size() <= 4 ? exceeded.size() : 3;
     for (std::size_t i = 0; i < most; ++i) fmt::print(to, "FAIL: {}\n", exceeded[i]);
     if (most < exceeded.size()) {

@@ -50,7 +50,7 @@ std::string Exchange(const std::string& input, int to, int from) {
   std::size_t sent = 0;
   while (true) {
     if (sent == input.size()) Close(to);
-    std::array<pollfd, 2> ready{{{from, POLLIN, 0}, {to, POLLOUT, 0}}};  // -1 is ignored
+    std::array<pollfd, 2> ready{{{from, POLLIN, 0}, {to, POLLOUT, 0}}};  // poll ignores -1
     if (poll(ready.data(), ready.size(), -1) < 0 && errno != EINTR) break;
     if (ready[1].revents != 0) {
       const ssize_t count = write(to, input.data() + sent, input.size() - sent);

@@ -15,7 +15,7 @@ namespace taut::cli {
 /// Cables that share a line of a summary.
 struct CableGroup {
   std::string name;                 ///< "3 cables side", or "cable lower_1" for a single one.
-  std::vector<std::size_t> cables;  ///< Indices, ascending.
+  std::vector<std::size_t> cables;  ///< Indices of the cables, ascending.
 };
 
 /// Groups the cables by their tags, except tags that are names of single cables. More than `most`

@@ -102,7 +102,7 @@ void SayNext(std::vector<std::string> words) {
 
 void SayFigure(std::vector<std::string> runs, const std::string& page,
                const std::vector<std::string>& more) {
-  constexpr std::size_t kMostRuns = 4;  // of `taut plot`
+  constexpr std::size_t kMostRuns = 4;  // limit of `taut plot`
   runs.resize(std::min(runs.size(), kMostRuns));
   std::vector<std::string> words{"taut", "plot"};
   words.insert(words.end(), runs.begin(), runs.end());

@@ -164,7 +164,7 @@ bool RobotConsole::SetUp(const RobotArguments& args, const ExperimentSpec* exper
   if (calibration_) add(link::SettingsFor(*calibration_, robot_));
   if (ours) link::WaitUntil(*line_->port, line_->port->now_s() + kBoot_s);
   if (!driver_->Configure(settings, found)) return false;
-  driver_->Cycle(1);  // sensor readings
+  driver_->Cycle(1);  // receives the first sensor readings
   if (ours) {
     for (std::size_t m = 0; m < cables_.size(); ++m) {
       const auto cable = std::find_if(robot_.def.cables.begin(), robot_.def.cables.end(),

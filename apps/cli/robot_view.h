@@ -48,7 +48,7 @@ class RobotView {
   /// A request that waits for the boards.
   struct Pending {
     int client = 0;
-    bool impedance = false;  ///< Mode after holding.
+    bool impedance = false;  ///< Whether impedance control follows hold.
     double until_s = 0;
   };
 

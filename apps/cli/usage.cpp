@@ -28,7 +28,7 @@ std::string Joined(const std::vector<std::string>& words, const char* last) {
 std::string MeantFlags(const CommandText& command, std::string word) {
   std::vector<std::string> all, longer;
   for (const WordText& flag : command.flags) all.push_back(flag.name);
-  if (word.rfind("--", 0) != 0) word = "-" + word;  // "-o" for "--out"
+  if (word.rfind("--", 0) != 0) word = "-" + word;  // "-o" becomes "--o", the beginning of "--out"
   std::replace(word.begin() + 2, word.end(), '-', '_');
   for (const std::string& flag : all) {
     if (word.size() > 2 && flag.rfind(word, 0) == 0) longer.push_back("\"" + flag + "\"");

@@ -11,12 +11,12 @@ namespace {
 
 // EEPROM layout (docs/hardware/firmware.md); `identity` is written when the board is flashed.
 struct Head {
-  uint8_t identity;  // 0 to 5
+  uint8_t identity;  // number of the board, 0 to 5
   uint8_t reserved;
   uint16_t nonce, not_nonce;
 };
 constexpr uint16_t kParametersAt = 8;  // version, parameters, checksum over both
-constexpr uint8_t kNobody = 7;         // a board without identity: address 0x17
+constexpr uint8_t kNobody = 7;         // number of a board without identity: its address is 0x17
 
 constexpr uint16_t kRecordSize = sizeof(Parameters) + 4;
 uint16_t store_at;

@@ -7,7 +7,7 @@
 
 namespace {
 
-constexpr uint8_t kReference = 1 << REFS0;  // AVcc
+constexpr uint8_t kReference = 1 << REFS0;  // the supply AVcc is the reference
 volatile uint16_t converted[2];
 volatile uint16_t encoder[2];
 
@@ -43,7 +43,7 @@ ISR(INT1_vect) {
 
 void StartSensors() {
   ADMUX = kReference;
-  ADCSRA = 1 << ADEN | 1 << ADIE | 1 << ADPS2 | 1 << ADPS1 | 1 << ADPS0;  // 125 kHz
+  ADCSRA = 1 << ADEN | 1 << ADIE | 1 << ADPS2 | 1 << ADPS1 | 1 << ADPS0;  // clock: 125 kHz
   DIDR0 = 1 << ADC0D | 1 << ADC1D;
   EICRA = 1 << ISC00 | 1 << ISC10;
   EIFR = 1 << INTF0 | 1 << INTF1;  // discards edges that arrived while interrupts were off

@@ -8,7 +8,7 @@ void StartDrive() {
   PORTB &= static_cast<uint8_t>(~(kDirection1 | kPwmPins));
   DDRD |= kEnable | kDirection0;
   DDRB |= kDirection1 | kPwmPins;
-  PORTB |= kDriverFaultPin;  // open drain
+  PORTB |= kDriverFaultPin;  // pull-up for the driver's open-drain output
   TCCR1A = 1 << COM1A1 | 1 << COM1B1;
   TCCR1B = 1 << WGM13 | 1 << CS10;  // mode 8: phase and frequency correct PWM, top ICR1
   ICR1 = taut::board::kFullWidth;   // 16 MHz / (2 * 400) = 20 kHz, counting up and down

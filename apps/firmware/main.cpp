@@ -35,7 +35,7 @@ void KeepCause() {
 
 void StartClock() {
   TCCR2A = 1 << WGM21;
-  TCCR2B = 1 << CS22;  // 250 kHz
+  TCCR2B = 1 << CS22;  // timer clock: 250 kHz
   OCR2A = 249;
   TIFR2 = 1 << OCF2A;
   TIMSK2 = 1 << OCIE2A;

@@ -12,12 +12,12 @@
 
 #include <avr/io.h>
 
-constexpr uint8_t kEncoderB[2] = {1 << PD4, 1 << PD5};  // in PIND
-constexpr uint8_t kEnable = 1 << PD6;                   // in PORTD
-constexpr uint8_t kDirection0 = 1 << PD7;               // in PORTD
-constexpr uint8_t kDirection1 = 1 << PB0;               // in PORTB
-constexpr uint8_t kPwmPins = 1 << PB1 | 1 << PB2;       // in PORTB
-constexpr uint8_t kDriverFaultPin = 1 << PB4;           // in PINB
+constexpr uint8_t kEncoderB[2] = {1 << PD4, 1 << PD5};  // bits in PIND
+constexpr uint8_t kEnable = 1 << PD6;                   // bit in PORTD
+constexpr uint8_t kDirection0 = 1 << PD7;               // bit in PORTD
+constexpr uint8_t kDirection1 = 1 << PB0;               // bit in PORTB
+constexpr uint8_t kPwmPins = 1 << PB1 | 1 << PB2;       // bits in PORTB
+constexpr uint8_t kDriverFaultPin = 1 << PB4;           // bit in PINB
 
 // Progress marks in GPIOR0, a register without a pin, for emulators and debuggers.
 enum Mark : uint8_t {

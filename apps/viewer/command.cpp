@@ -56,7 +56,7 @@ bool Fits(const nlohmann::json& value, const MessageField& field) {
 /// Returns whether `json` has exactly the fields of messages of this type.
 bool CheckFields(const nlohmann::json& json, const std::string& type, std::string& error) {
   bool known = false;
-  std::size_t found = 1;  // "type"
+  std::size_t found = 1;  // the field "type" has been found already
   for (const MessageField& field : kClientFields) {
     if (type != field.message) continue;
     known = true;

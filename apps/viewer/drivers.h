@@ -7,7 +7,7 @@ namespace taut::viewer {
 
 class Drivers {
  public:
-  int driver() const noexcept { return driver_; }  ///< 0: no client.
+  int driver() const noexcept { return driver_; }  ///< Number of the driving client; 0: none.
 
   /// Returns whether a command of this type from this client is accepted. If no client drives, the
   /// first client that sends a command becomes the driver.

@@ -62,7 +62,7 @@ class HttpSockets::Socket : public std::enable_shared_from_this<Socket> {
 
   beast::tcp_stream stream_;
   HttpSockets& all_;
-  List* list_ = nullptr;  ///< Null: closed.
+  List* list_ = nullptr;  ///< List that contains the socket; null: closed.
   List::iterator place_;
   beast::flat_buffer buffer_{64 * 1024};
   std::optional<http::request_parser<http::empty_body>> parser_;

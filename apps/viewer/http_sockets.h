@@ -31,7 +31,7 @@ class HttpSockets {
 
   const ServerOptions& options_;
   Serve serve_;
-  List asking_, answered_;  ///< Longest waiting first.
+  List asking_, answered_;  ///< The longest waiting socket is first.
 };
 
 }  // namespace taut::viewer

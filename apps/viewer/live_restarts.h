@@ -56,7 +56,7 @@ class Restarts {
  private:
   struct Change {
     int client = 0;
-    std::string parameter;  ///< Empty: a reset.
+    std::string parameter;  ///< Name of the parameter; empty: a reset.
     double value = 0;
   };
   using Group = std::vector<Change>;

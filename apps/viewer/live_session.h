@@ -24,7 +24,7 @@ struct LiveOptions {
   double speed = 1;         ///< Simulated seconds per second; 0: as fast as possible.
   bool paused = false;
   bool watch = false;   ///< Restart when an input file changes; show the errors of such files.
-  MakeRecorder record;  ///< Null: no recording.
+  MakeRecorder record;  ///< Creates the recorder; null: no recording.
   /// Computes Scene.statics of a model; null: not available.
   std::function<Json(const ExperimentSpec&)> statics;
   /// Prints lines to the terminal about interruptions of the recording. Called on the session's
@@ -35,7 +35,7 @@ struct LiveOptions {
 /// State of a run at a time, for comparison with `taut run` of the same inputs.
 struct StateMark {
   double time_s = 0;
-  std::uint64_t hash = 0;  ///< `World::Hash`.
+  std::uint64_t hash = 0;  ///< Result of `World::Hash`.
 };
 
 class LiveSession final : public Session {
@@ -105,7 +105,7 @@ class LiveSession final : public Session {
   std::vector<bool> has_set_point_;  ///< Whether each cable is under impedance control.
   std::optional<History> history_;
   std::optional<std::size_t> past_row_;  ///< Displayed row; nothing: the present.
-  Frame moment_;                         ///< Reused, to reduce allocations.
+  Frame moment_;                         ///< Frame that is reused, to reduce allocations.
   int run_number_ = 1;
   bool end_told_ = false, broken_told_ = false, dragging_ = false;
   std::size_t overloads_told_ = 0;  ///< Number of logged items of LiveRun::Overloads.

@@ -16,7 +16,7 @@ Vec3 Turned(const Quat& q, const Vec3& v) {
 NodeChannels::NodeChannels(const ModelDef& def) {
   static const char* const kNames[] = {"/position_x_m", "/position_y_m", "/position_z_m"};
   for (const NodeDef& node : def.nodes) {
-    if (node.body == kWorld) continue;  // fixed in the world
+    if (node.body == kWorld) continue;  // the node is fixed in the world
     // at t = 0 the axes of bodies are parallel to W
     const Vec3& c = def.bodies[static_cast<std::size_t>(node.body)].com_m;
     const Vec3& p = node.position_m;

@@ -94,7 +94,7 @@ std::unique_ptr<Recorded> Recorded::Load(const std::string& path,
 void Recorded::FindInputs() {
   const fs::path inputs = BesideTrace(path_, "inputs", ".yaml");
   std::error_code failed;
-  if (!fs::is_regular_file(inputs, failed)) {  // a pipe could block
+  if (!fs::is_regular_file(inputs, failed)) {  // reading a pipe could block
     notice_ = fmt::format("there is no {} in the trace's folder: bodies are shown as spheres",
                           inputs.filename().string());
     return;

@@ -64,7 +64,7 @@ class Recording final : public LiveRecorder {
   double rate_hz_ = 0, time_s_ = 0;
   std::int64_t rows_ = 0, event_count_ = 0;
   std::string failure_, resumed_;
-  std::string since_;  ///< Time of the failure.
+  std::string since_;  ///< Time of the failure, as text.
   bool ours_ = false;  ///< The folder contains no files of another run.
   bool complete_ = true;
 };

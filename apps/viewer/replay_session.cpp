@@ -77,7 +77,7 @@ void ReplaySession::Handle(int client, const Command& command) {
     Anchor(now_s);
     paused_ = true;
   } else if (type == "resume") {
-    Anchor(now_s >= times.back() ? times.front() : now_s);  // restarts at the end
+    Anchor(now_s >= times.back() ? times.front() : now_s);  // at the end, the replay restarts
     paused_ = false;
   } else if (type == "seek") {
     Anchor(command.value);

@@ -233,7 +233,7 @@ void Server::Impl::EndOnSignals() {
   signals.add(SIGTERM);
   struct sigaction hangup {};
   sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) signals.add(SIGHUP);  // respects nohup
+  if (hangup.sa_handler != SIG_IGN) signals.add(SIGHUP);  // with nohup, SIGHUP stays ignored
   signals.async_wait([this](beast::error_code failed, int) {
     if (!failed) io.stop();
   });
@@ -294,7 +294,7 @@ bool IsLoopback(const std::string& address) {
 }
 
 std::string RandomToken() {
-  std::random_device device;  // the kernel's generator
+  std::random_device device;  // random numbers of the kernel
   std::string token;
   for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
   return token;

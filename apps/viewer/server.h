@@ -21,7 +21,7 @@ std::string RandomToken();
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8080;  ///< 0: any free port.
+  std::uint16_t port = 8080;  ///< Port to listen on; 0: any free port.
   /// Browsers must present one of the tokens, in the URL or as the cookie set with it. The first
   /// permits driving, the second only watching.
   std::string drive_token = RandomToken(), watch_token = RandomToken();

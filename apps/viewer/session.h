@@ -24,7 +24,7 @@ namespace taut::viewer {
 
 /// A text for one client or for all.
 struct Outgoing {
-  int client = 0;  ///< 0: all clients.
+  int client = 0;  ///< Number of the receiving client; 0: all clients.
   std::string text;
 };
 

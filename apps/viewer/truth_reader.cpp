@@ -56,7 +56,7 @@ void TruthReader::Connect() {
 void TruthReader::TakeLine(const std::string& line) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object() || !json.contains("bodies") || !json["bodies"].is_array()) return;
-  if (json.contains("format")) return;  // line with the names
+  if (json.contains("format")) return;  // the first line contains only names
   std::vector<Frame::Body> pose;
   for (const nlohmann::json& numbers : json["bodies"]) {
     const auto body = BodyOf(numbers);

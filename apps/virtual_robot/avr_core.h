@@ -89,7 +89,7 @@ class AvrCore {
   std::uint8_t causes_ = 0;  ///< MCUSR, cleared only by the program and by loss of power.
   std::uint8_t wanted_cause_ = 0;
   std::uint8_t temp_ = 0;  ///< High byte register shared by all 16-bit registers of Timer 1.
-  std::uint16_t compare_[2] = {0, 0}, top_ = 0;  ///< Values in the timer.
+  std::uint16_t compare_[2] = {0, 0}, top_ = 0;  ///< Compare values and top of the timer.
   int converting_ = 0,
       converted_ = 0;           ///< ADC results: of the conversion in progress, and the last one.
   bool result_locked_ = false;  ///< Whether ADCL has been read, but not yet ADCH.

@@ -66,7 +66,7 @@ void AvrCore::Hooks::Log(avr_t* avr, int level, const char* format, va_list argu
   std::string plain;
   for (const char* c = text; *c; ++c) {
     if (*c == '\033') {
-      while (*c && *c != 'm') ++c;  // a color code
+      while (*c && *c != 'm') ++c;  // skips a color code
       if (!*c) break;
     } else if (*c != '\n') {
       plain += *c;

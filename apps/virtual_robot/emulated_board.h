@@ -89,9 +89,9 @@ class Board {
   std::uint64_t cycle() const;
   Time now() const;
   std::uint8_t Memory(std::uint16_t address) const;  ///< Address in the data space, 0x000 to 0x8FF.
-  void SetMemory(std::uint16_t address, std::uint8_t value);  ///< 0x100 to 0x8FF.
+  void SetMemory(std::uint16_t address, std::uint8_t value);  ///< Address: 0x100 to 0x8FF.
   std::uint8_t last_marker() const { return marker_; }
-  std::uint8_t stack_probe() const;  ///< GPIOR1.
+  std::uint8_t stack_probe() const;  ///< Content of the register GPIOR1.
   /// Returns the largest depth of the stack since power-on [bytes]. Power-on fills the memory with
   /// a pattern; the depth reaches to the first byte that differs from it.
   int DeepestStack() const;

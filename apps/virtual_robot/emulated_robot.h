@@ -33,7 +33,7 @@ struct RobotOptions {
   /// rotation of a period one period later.
   Time plant_period = 100 * kMicrosecond;
   std::vector<FaultSpec> faults{};
-  LogSink log{};            ///< May be empty.
+  LogSink log{};            ///< Receiver of log lines; may be empty.
   bool log_frames = false;  ///< Log the USB frames, too.
 };
 

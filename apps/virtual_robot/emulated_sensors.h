@@ -23,7 +23,7 @@ class Encoder {
   std::vector<EncoderEdge> Turn(double angle_rad, Time duration, Time at);
   /// Returns the present levels of the lines.
   EncoderEdge Now(Time at) const { return Edge(state_, at); }
-  std::int64_t states() const { return state_; }  ///< Counted from angle 0.
+  std::int64_t states() const { return state_; }  ///< Number of states since angle 0.
 
  private:
   static EncoderEdge Edge(std::int64_t state, Time at);

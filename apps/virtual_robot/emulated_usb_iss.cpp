@@ -111,7 +111,7 @@ void UsbIss::Step(Time now) {
   } else if (phase_ == Phase::kOnBus && !bus_.Busy()) {
     const Bytes answer = Answer(command_, bus_.result());
     reply_.insert(reply_.end(), answer.begin(), answer.end());
-    NextCommand(bus_.result().ended);  // possibly some microseconds ago
+    NextCommand(bus_.result().ended);  // the transfer may have ended some microseconds ago
   }
 }
 

@@ -19,7 +19,7 @@ struct UsbIssOptions {
   /// Firmware version of the adapter. Before 8, a byte without acknowledgement left the bus without
   /// a stop in I2C_DIRECT.
   int firmware_version = 8;
-  std::string serial_number{"00000001"};  ///< Eight characters.
+  std::string serial_number{"00000001"};  ///< Serial number of eight characters.
   // From the host's write to the adapter's program, and back: assumed, no published values.
   Time request_latency = 250 * kMicrosecond;
   Time reply_latency = 250 * kMicrosecond;

@@ -69,7 +69,7 @@ struct BusResult {
 };
 
 struct BusTiming {
-  Time bit = 2'500 * kNanosecond;  ///< 400 kHz.
+  Time bit = 2'500 * kNanosecond;  ///< Duration of a bit, at 400 kHz.
   Time byte_gap = 0;               ///< Gap between two bytes, caused by the master (assumed).
   Time timeout = 25 * kMillisecond;
 };

@@ -16,7 +16,7 @@ constexpr int kArmingCycles = 6;
 
 bool LoadHost::Start() {
   robot_.AdvanceTo(100 * kMillisecond);      // time for the boards to boot
-  const Bytes mode{0x5A, 0x02, 0x70, 0x04};  // 400 kHz
+  const Bytes mode{0x5A, 0x02, 0x70, 0x04};  // I2C mode at 400 kHz
   if (robot_.Transfer(mode) != Bytes{0xFF, 0x00}) return false;
   for (int i = 0; i < 2 * kArmingCycles; ++i) Cycle();
   cycles_ = 0;

@@ -247,7 +247,7 @@ int Run(const Arguments& arguments) {
     script = LoadFaults(arguments.faults, plant->cable_names(), found);
   }
   if (!found.ok()) return Fail(found);
-  fmt::print(stderr, "{}", found.Format());  // warnings
+  fmt::print(stderr, "{}", found.Format());  // prints warnings
   LogFile log;
   if (!log.Open(arguments.log)) {
     fmt::print(stderr, "error: cannot write {}\n", arguments.log);

@@ -9,8 +9,8 @@ namespace {
 // Bits of TWCR.
 constexpr std::uint8_t kTwint = 0x80, kTwea = 0x40, kTwsto = 0x10, kTwwc = 0x08, kTwen = 0x04,
                        kTwie = 0x01;
-constexpr std::uint8_t kGeneralCallEnable = 0x01;  // in TWAR
-constexpr std::uint8_t kPrescaler = 0x03;          // in TWSR
+constexpr std::uint8_t kGeneralCallEnable = 0x01;  // bit in TWAR
+constexpr std::uint8_t kPrescaler = 0x03;          // bits in TWSR
 
 }  // namespace
 

@@ -35,7 +35,7 @@ void PrepareClasses(const py::module_& module) {
     auto* const type = reinterpret_cast<PyTypeObject*>(value.ptr());
     KeepBases(type);
     const auto& bases = py::detail::all_type_info(type);
-    if (bases.empty()) continue;  // not a class of pybind11
+    if (bases.empty()) continue;  // the class is not one of pybind11
     for (py::detail::type_info* info : bases) info->operator_new = RaiseNotInitialized;
     const py::handle own = value;
     const py::cpp_function of_subclass([super, own](const py::type& made, const py::kwargs& more) {

@@ -270,7 +270,7 @@ class CallingPlant final : public PythonPlant {
   std::shared_ptr<py::object> of_;
   std::shared_ptr<Callbacks> callbacks_;
   std::size_t cables_;
-  std::vector<double> rows_;  ///< Readings, then commands.
+  std::vector<double> rows_;  ///< Readings, followed by commands.
   std::vector<CommandMode> mode_;
   int gait_ = -1;
   double time_s_ = 0;

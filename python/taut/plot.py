@@ -22,7 +22,7 @@ import sys
 MM_PER_INCH = 25.4
 # Okabe and Ito's eight colors, which remain distinct with color vision deficiencies.
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#f0e442")
-STYLES = ("-", "--", ":", "-.")   # of runs
+STYLES = ("-", "--", ":", "-.")   # line styles of the runs
 PHASE = "#e9edf1"                 # background of every other phase
 MOST_CHANNELS = 24
 NO_MATPLOTLIB = 4   # exit status of `main`

@@ -11,7 +11,7 @@ namespace taut::analysis {
 
 /// Poses of the moving bodies, in the order of `Structure::bodies`.
 struct Placement {
-  std::vector<Vec3> center_m;  ///< Center of mass, in W.
+  std::vector<Vec3> center_m;  ///< Centers of mass, in W.
   std::vector<Quat> turn;      ///< Rotation from the described orientation, in W.
 };
 
@@ -35,7 +35,7 @@ struct Coordinate {
   double value = 0;
   std::vector<int> bodies;   ///< Indices among the moving bodies; six motions each.
   Eigen::VectorXd gradient;  ///< Six components per body of `bodies`.
-  Eigen::MatrixXd hessian;   ///< Empty if not requested.
+  Eigen::MatrixXd hessian;   ///< Second derivatives; empty if not requested.
 };
 
 /// Returns the matrix of the cross product a x.

@@ -55,7 +55,7 @@ class ForceBalance {
   struct Solutions {
     Eigen::VectorXd particular;  ///< Least-norm solution; least-squares solution if the loads
                                  ///< cannot be balanced.
-    Eigen::MatrixXd free;        ///< Orthonormal columns.
+    Eigen::MatrixXd free;        ///< Basis of the solutions without loads, orthonormal columns.
     double left_n = 0;           ///< Largest component of the loads that no x can balance.
   };
   Solutions Solve() const;

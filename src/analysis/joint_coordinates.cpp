@@ -93,7 +93,7 @@ Jet SquaredTurn(const PlacedJoint& joint, const Sides& sides) {
                        SmallTurn(sides.a, -1);
   const Jet s2 = Dot(turn.v, turn.v);
   const double x = std::fmin(s2.value, 1.0);
-  if (x < 1e-4) {  // relative truncation error below x^4
+  if (x < 1e-4) {  // the series has a relative truncation error below x^4
     return Apply(s2, 4 * x * (1 + x * (1.0 / 3 + x * (8.0 / 45 + x * 4.0 / 35))),
                  4 * (1 + x * (2.0 / 3 + x * (8.0 / 15 + x * 16.0 / 35))),
                  4 * (2.0 / 3 + x * (16.0 / 15 + x * 48.0 / 35)));

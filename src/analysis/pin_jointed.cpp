@@ -56,7 +56,7 @@ class Maker {
     const double tension_n = CableTension(cable);
     double on_wheels_m = 0;
     for (const auto& wheel : path.wheels()) on_wheels_m += wheel.arc;
-    std::vector<int> ends;    // places, two per string
+    std::vector<int> ends;    // places at the ends of the strings, two per string
     std::vector<int> starts;  // first string of each cluster
     for (int i = 1, before = 0; i < path.count(); ++i) {
       const std::size_t at = path.attachment(i);

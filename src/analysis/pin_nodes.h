@@ -63,7 +63,7 @@ struct PinBody {
   struct Bar {
     PinMember::Kind kind;
     std::string name;
-    int from, to;  ///< Indices of places.
+    int from, to;  ///< Places at the bar's ends.
     MemberDef section;
   };
   std::vector<Bar> bars;

@@ -32,7 +32,7 @@ constexpr double kWellConditioned = 1e-11;
 
 /// Equations first, then inequalities, each scaled to length one.
 struct Rows {
-  MatrixXd normals;  ///< One column per row.
+  MatrixXd normals;  ///< Normals of the constraints, one column per row
   VectorXd offsets, lengths;
   int equations = 0;
 
@@ -175,7 +175,7 @@ class DualActiveSet {
     while (steps < most_steps_) {
       const Direction to = Toward(row);
       double longest = kInfinity;
-      int first = -1;  // constraint to remove
+      int first = -1;  // index of the constraint to remove
       for (int k = 0; k < size(); ++k) {
         if (active_[static_cast<std::size_t>(k)] < rows_.equations || to.r[k] <= 0) continue;
         const double t = std::fmax(0.0, multipliers_[static_cast<std::size_t>(k)]) / to.r[k];

@@ -10,11 +10,11 @@ namespace taut::analysis {
 /// Minimize x' H x / 2 + g' x subject to E x = e and A x >= b.
 struct QuadraticProgram {
   Eigen::MatrixXd hessian;       ///< H, symmetric, positive semidefinite; may be zero.
-  Eigen::VectorXd gradient;      ///< g
+  Eigen::VectorXd gradient;      ///< g, gradient at x = 0.
   Eigen::MatrixXd equalities;    ///< E. Rows may be linearly dependent. Empty: no equations.
-  Eigen::VectorXd equal_to;      ///< e
+  Eigen::VectorXd equal_to;      ///< e, right side of the equations.
   Eigen::MatrixXd inequalities;  ///< A. Empty: no inequalities.
-  Eigen::VectorXd at_least;      ///< b
+  Eigen::VectorXd at_least;      ///< b, lower bounds of A x.
 };
 
 enum class QuadraticOutcome {

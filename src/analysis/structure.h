@@ -75,7 +75,7 @@ class Structure {
   std::vector<Row> rows;
   std::vector<Touch> touches;
   std::vector<Load> loads;
-  std::vector<Vec3> weight_n;    ///< Per moving body.
+  std::vector<Vec3> weight_n;    ///< Weight of each moving body.
   std::vector<double> reach_m;   ///< Largest distance from the center of mass at which a force
                                  ///< acts, per moving body.
   double size_m = 0;             ///< Diagonal of the structure's bounding box.

@@ -128,7 +128,8 @@ std::string ChannelOf(const ColumnMeaning& found, const std::string& si,
   const bool turns = found.axis == 'w' || HasWord(tokens, {"rotation", "orientation", "quat",
                                                            "quaternion", "qx", "qy", "qz", "qw"});
   if (found.kind == "body" && turns) {
-    return si.empty() ? head + "orientation_{axis}" : std::string();  // angles are no quaternion
+    return si.empty() ? head + "orientation_{axis}" : std::string();  // a unit marks angles,
+                                                                      // not a quaternion
   }
   if (si.empty() && HasWord(tokens, {"force", "kraft"})) return {};
   return (si == "m" || si.empty()) && !turns ? head + "position_{axis}_m" : std::string();

@@ -65,7 +65,7 @@ class Guess {
   /// Adds rules for vectors and quaternions: columns of one member whose names differ only in their
   /// axis.
   void Groups() {
-    std::map<std::string, std::map<char, std::size_t>> groups;  // by channel
+    std::map<std::string, std::map<char, std::size_t>> groups;  // column of each axis, by channel
     for (std::size_t i = 0; i < meanings_.size(); ++i) {
       const ColumnMeaning& meaning = meanings_[i];
       if (Free(i) && meaning.axis != 0 && !meaning.several &&

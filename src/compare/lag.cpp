@@ -13,7 +13,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Sums over pairs of rows of products of deviations from the means.
 struct Moments {
   double count = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
-  double size_a = 0.0, size_b = 0.0;  ///< Largest absolute values.
+  double size_a = 0.0, size_b = 0.0;  ///< Largest absolute values of a and b.
 
   /// Returns Pearson's correlation. Returns NaN if a signal is constant up to rounding.
   double Correlation() const {

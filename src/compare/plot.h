@@ -54,8 +54,8 @@ struct Series {
 struct Plot {
   std::string title, x, y;  ///< Texts without markup.
   std::vector<Series> series;
-  std::vector<double> levels;  ///< Values of horizontal lines.
-  std::vector<double> marks;   ///< Values of vertical lines.
+  std::vector<double> levels;  ///< Values at which horizontal lines are drawn.
+  std::vector<double> marks;   ///< Values at which vertical lines are drawn.
 };
 
 /// Returns the figure as SVG. Omits points that are not finite. Returns an empty text if no points

@@ -356,12 +356,12 @@ class LaneEnv final : public Env {
   const ExperimentSpec observed_;
   std::vector<ChannelInfo> action_channels_, observation_channels_;
   std::vector<double> action_scales_;
-  std::uint64_t kind_ = 0;  ///< 0: not computed yet.
+  std::uint64_t kind_ = 0;  ///< Hash of the environment's properties; 0: not computed yet.
   env::Starts starts_;
   base::ThreadPool pool_;
-  std::vector<env::Place> places_;  ///< Working memory per thread.
+  std::vector<env::Place> places_;  ///< Working memory of each thread.
   std::vector<std::unique_ptr<Group>> groups_;
-  std::vector<std::uint8_t> stepped_, begun_, all_;  ///< Per world.
+  std::vector<std::uint8_t> stepped_, begun_, all_;  ///< Flags of the worlds.
   std::vector<std::uint8_t> paused_;                 ///< Per group: whether its period is
                                                      ///< incomplete.
   bool stopped_ = false;                             ///< Whether `keep_going` stopped the last

@@ -12,8 +12,8 @@ struct Episode {
   std::uint64_t raw_seed = 0;  ///< Determines the seed of the next episode.
   std::uint64_t seed = 0;      ///< Seed of this episode.
   RolloutWorld world;
-  Vec3 gravity_m_per_s2;                        ///< In W.
-  int action_delay = 0, observation_delay = 0;  ///< In periods.
+  Vec3 gravity_m_per_s2;                        ///< Gravity, in W.
+  int action_delay = 0, observation_delay = 0;  ///< Delays in periods.
 };
 
 Episode DrawEpisode(const Plan& plan, std::uint64_t raw_seed);

@@ -119,7 +119,8 @@ void Observer::Serialize(plant::LaneState& state) {
       state.Value(At((now_ + slots_ - age) % slots_, i, static_cast<std::size_t>(state.lane())));
     }
   }
-  if (state.reads()) std::fill(in_float_.begin(), in_float_.end(), 0);  // range is unknown
+  // The range of restored numbers is unknown.
+  if (state.reads()) std::fill(in_float_.begin(), in_float_.end(), 0);
 }
 
 namespace {

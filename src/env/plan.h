@@ -12,13 +12,13 @@ namespace taut::env {
 struct Plan {
   ExperimentSpec experiment;
   EnvironmentSpec spec;         ///< Environment of the experiment.
-  EnvironmentVariation varied;  ///< Empty without randomization.
+  EnvironmentVariation varied;  ///< Randomization; empty: none.
   EnvOptions options;
   std::shared_ptr<const Model> model;
   Simd simd = Simd::kScalar;
   int lanes = 1;
   std::int64_t steps_per_period = 1, episode_steps = 1;
-  int most_action_delay = 0, most_observation_delay = 0;  ///< In periods.
+  int most_action_delay = 0, most_observation_delay = 0;  ///< Largest delays, in periods.
   bool start_varies = false;                              ///< Whether starts depend on the seed.
 
   std::size_t action_count() const noexcept { return spec.actions.size(); }

@@ -16,7 +16,7 @@ namespace taut {
 namespace {
 
 constexpr std::size_t kAskEvery = 256;   // number of rows between calls of `go_on`
-constexpr double kMostSeconds = 1.8e10;  // limit of 64-bit nanoseconds
+constexpr double kMostSeconds = 1.8e10;  // limit of times in 64-bit nanoseconds
 constexpr char kNoGroup[] = "values";    // the topic of names without a slash
 
 /// Calls `go_on` at every 256th row. Returns false if the caller wants to stop.

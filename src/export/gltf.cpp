@@ -25,7 +25,7 @@ using nlohmann::ordered_json;
 constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 constexpr int kFloat = 5126, kShort = 5123, kWord = 5125;
 constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;
-constexpr std::size_t kMostShorts = 65535;  // 65535 is reserved in glTF
+constexpr std::size_t kMostShorts = 65535;  // the specification reserves 65535
 
 class Glb {
  public:

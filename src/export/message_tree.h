@@ -30,7 +30,7 @@ struct MessageTree::Field {
   std::string name;
   std::string key;  ///< JSON text of the key, including the colon.
   std::size_t channel = 0;
-  std::unique_ptr<MessageTree> inner;  ///< Null for a channel.
+  std::unique_ptr<MessageTree> inner;  ///< Tree of the inner keys; null for a channel.
 };
 
 /// Writes a number with the fewest digits from which the same number is read back.

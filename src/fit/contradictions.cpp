@@ -146,7 +146,7 @@ void ContradictByCost(const FitProblem& problem, FitVerdict& verdict) {
   }
   if (points.empty()) return;
   const auto answers = Compute(problem, points);
-  if (!answers) return;  // stopped
+  if (!answers) return;  // the computation was stopped
   const std::vector<bool> all;
   const Rows rows(problem, all);
   const double best = Cost(problem, rows, verdict.values, verdict.derivatives.residual);

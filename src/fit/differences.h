@@ -17,7 +17,7 @@ namespace taut::fit {
 struct Stencil {
   std::size_t parameter = 0;
   bool central = true;
-  std::vector<double> at;  ///< Values of the parameter.
+  std::vector<double> at;  ///< Values of the parameter at the points.
 };
 
 /// `share`: factor of the problem's step length.

@@ -11,7 +11,7 @@ namespace taut::fit {
 /// Singular value decomposition J = U S V^T, with one singular value per column (zeros if J has
 /// fewer rows).
 struct Singular {
-  Vector value;  ///< In descending order.
+  Vector value;  ///< Singular values in descending order.
   Matrix V;      ///< Columns are the right singular vectors.
 };
 Singular Decompose(const Matrix& jacobian);
@@ -19,7 +19,7 @@ Singular Decompose(const Matrix& jacobian);
 /// Pseudo-inverse of J^T J, and the parameters in its null space. The variance of these parameters
 /// is infinite, but the pseudo-inverse gives finite values.
 struct Spread {
-  Matrix covariance;          ///< Without null directions.
+  Matrix covariance;          ///< Pseudo-inverse, without null directions.
   std::vector<bool> endless;  ///< Whether a parameter belongs to a null direction.
   Matrix null;                ///< Null directions as columns.
 };

@@ -57,7 +57,7 @@ class Profile {
     for (std::size_t pass = 0; pass < points_.size() && !lowered_.empty(); ++pass) {
       std::vector<FitJob> jobs;
       for (std::size_t k = 0; k < points_.size(); ++k) {
-        for (const std::size_t other : {k - 1, k + 1}) {  // k - 1 overflows at 0
+        for (const std::size_t other : {k - 1, k + 1}) {  // k - 1 overflows if k = 0
           if (other >= points_.size() || lowered_.count(points_[other].value) == 0) continue;
           if (!points_[other].failed.empty()) continue;
           jobs.push_back({points_[other].values, held_, {}});

@@ -17,7 +17,7 @@ namespace taut::identify {
 struct CutMember {
   /// Channels of its force (tension is positive). One of them must be measured.
   std::vector<std::string> channels;
-  int inside = 0, outside = kWorld;  ///< Bodies at its ends.
+  int inside = 0, outside = kWorld;  ///< Bodies at the member's ends.
   Vec3 from_m, to_m;                 ///< Its ends on these bodies, in the described pose.
 };
 

@@ -22,7 +22,7 @@ struct Computed {
   bool stopped = false;
   std::vector<double> time_s;  ///< Times of set points for static equilibria; 1, 2, ... for load
                                ///< cases.
-  std::vector<std::vector<double>> values;  ///< [requested channel][row].
+  std::vector<std::vector<double>> values;  ///< Computed values: [requested channel][row].
   /// For simulations: each value of each reference of the experiment [N]. NaN for values
   /// that the simulation did not reach.
   std::vector<std::vector<double>> references;

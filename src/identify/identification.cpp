@@ -22,7 +22,7 @@ struct Tied {
   Row row;
   std::size_t model = 0;
   RowChannels channels;
-  std::vector<std::size_t> gains, offsets, delays;  ///< Indices of its estimates.
+  std::vector<std::size_t> gains, offsets, delays;  ///< Indices of the row's estimates.
 };
 
 /// Rows of a problem, in the problem's order.

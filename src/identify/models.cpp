@@ -128,7 +128,7 @@ std::vector<Models::Answer> Models::ComputeSpread(const std::vector<Job>& jobs) 
   std::vector<Answer> made(jobs.size());
   if (jobs.empty()) return made;
   const std::vector<std::string> answers = spread_(pieces);
-  if (answers.size() != jobs.size()) return made;  // stopped
+  if (answers.size() != jobs.size()) return made;  // the computation was stopped
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     made[i] = std::make_shared<const Computed>(UnpackComputed(answers[i]));
   }

@@ -58,7 +58,7 @@ class Models {
     std::size_t experiment = 0;           ///< One of the experiments that share this model.
     std::vector<std::size_t> parameters;  ///< Estimates that affect this model.
     std::vector<std::string> channels;
-    std::vector<double> moments_s;  ///< In increasing order.
+    std::vector<double> moments_s;  ///< Times of equilibria, increasing.
   };
   using Job = std::pair<std::size_t, Overrides>;
   Overrides At(const Model& model, const std::vector<double>& point) const;

@@ -12,14 +12,14 @@ namespace taut::import_ntrt {
 
 struct DraftNode {
   std::string name, full_name;
-  Words tags;         ///< Without the node's name.
-  int structure = 0;  ///< -1: unused; not written.
+  Words tags;         ///< Tags of the node, without its name.
+  int structure = 0;  ///< NTRT structure of the node; -1: unused, not written.
   Vec3 at_m;          ///< Position in the frame of its structure's file.
   std::string fixed_to;
 };
 
 struct DraftPair {
-  int from = 0, to = 0;  ///< Indices of draft nodes.
+  int from = 0, to = 0;  ///< Ends of the pair: indices of draft nodes.
   Words tags;
   std::string name;   ///< Empty: taut names the pair after its nodes.
   int structure = 0;  ///< NTRT structure that contains the pair.

@@ -42,7 +42,7 @@ struct Built {
   std::vector<Solid> solids;
   std::vector<Cable> cables;
   std::vector<int> bodies_solids;  ///< Per body: number of solids.
-  std::vector<double> mass_kg;     ///< Per body; 0: fixed.
+  std::vector<double> mass_kg;     ///< Mass of each body; 0: fixed.
 };
 
 /// Builds the structure. Reports errors for structures that NTRT would not build.

@@ -28,7 +28,7 @@ struct Node {
 };
 
 struct Pair {
-  int from = 0, to = 0;  ///< Indices of nodes.
+  int from = 0, to = 0;  ///< Ends of the pair: indices of nodes.
   Words tags;
   SourceRef at;
   int structure = 0;  ///< Structure that contains the pair. Its nodes may belong to substructures.

@@ -17,7 +17,7 @@ double Reread(const char* format, int precision, double number) {
   char text[400];
   std::snprintf(text, sizeof text, format, precision, number);
   const double read = std::strtod(text, nullptr);
-  return read == 0.0 ? 0.0 : read;  // avoid -0
+  return read == 0.0 ? 0.0 : read;  // -0 becomes 0
 }
 
 /// Returns a text such as "2 * pi / 3". Returns an empty text if the angle is not a simple fraction

@@ -115,13 +115,13 @@ class CmaEs final : public Optimizer {
   int lambda_, mu_;
   double sigma_;
   Vector mean_, path_c_, path_sigma_;
-  Matrix C_, B_;  ///< Covariance; its eigenvectors.
+  Matrix C_, B_;  ///< Covariance matrix and its eigenvectors.
   Vector D_;      ///< Square roots of its eigenvalues.
   Vector weights_;
   double mu_eff_ = 0, c_sigma_ = 0, d_sigma_ = 0, c_c_ = 0, c_1_ = 0, c_mu_ = 0, expected_norm_ = 0;
-  double decay_ = 1;  ///< (1 - c_sigma)^(2 generations).
+  double decay_ = 1;  ///< Decay of the initial path: (1 - c_sigma)^(2 generations).
   std::int64_t generation_ = 0, decomposed_ = 0;
-  std::vector<Vector> steps_;  ///< Steps before mirroring.
+  std::vector<Vector> steps_;  ///< Steps of the points before mirroring.
   std::uint64_t drawn_ = 0;
 };
 

@@ -56,7 +56,7 @@ class Row {
   explicit Row(sqlite3_stmt* statement) : statement_(statement) {}
 
   std::int64_t Integer(int column);
-  double Number(int column);  ///< Returns NaN for NULL.
+  double Number(int column);  ///< Returns a number; NaN for NULL.
   std::string Text(int column);
   /// Returns a 64-bit unsigned integer, which is stored as text.
   std::uint64_t Whole(int column);

@@ -68,7 +68,7 @@ void Coordinates::AddBodies(const World<Plain>& at) {
       c.rows = {{l.pos + 3 * b + k, 1.0}};
       c.signal.at = at.Get(l.pos + 3 * b + k).v;
     }
-    for (int k = 0; k < 3; ++k) {  // q <- q + (0, e / 2) q
+    for (int k = 0; k < 3; ++k) {  // rotate by the small vector e: q <- q + (0, e / 2) q
       Coordinate& c =
           State(name + "turn_" + kAxes[k], "rad", SignalKind::kTurn, touches ? 4e-8 : Less(3e-5));
       const Vec3 e{k == 0 ? 0.5 : 0.0, k == 1 ? 0.5 : 0.0, k == 2 ? 0.5 : 0.0};

@@ -11,8 +11,8 @@ namespace {
 
 using board::Mode;
 
-constexpr std::size_t kBoardsPerReply = 3;  // limit of the adapter
-constexpr int kReadTries = 2;               // per frame, within a cycle
+constexpr std::size_t kBoardsPerReply = 3;  // number of boards per reply, limited by the adapter
+constexpr int kReadTries = 2;               // attempts to read a frame within a cycle
 constexpr int kLookForLost = 10;            // cycles between two attempts to reach a lost board
 // A board processes a request within 2 ms, so its answer may be available in the next cycle.
 constexpr int kAnswerCycles = 2;

@@ -10,7 +10,7 @@ namespace {
 using board::Mode;
 
 constexpr int kRequestTries = 3;
-constexpr int kResetAfter = 3;  // consecutive broadcasts without acknowledgment
+constexpr int kResetAfter = 3;  // consecutive broadcasts without acknowledgment before a bus reset
 
 constexpr double kSlack_n = 0.5, kTaut_n = 2;
 constexpr int kSlackCycles = 20;

@@ -88,7 +88,7 @@ MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangl
   // relative to a corner, to avoid cancellation far from the origin
   const Vec3 from = corners_m[static_cast<std::size_t>(triangles.front()[0])];
   double volume_m3 = 0.0;
-  Vec3 first;  // first moments of x, y, z
+  Vec3 first;  // first moments of the volume: integrals of x, y, z
   double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
   for (const std::array<int, 3>& t : triangles) {
     const auto corner = [&](std::size_t k) {

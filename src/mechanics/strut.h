@@ -33,7 +33,7 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body);
 struct BodyMoment {
   Vec3 position_m;                  ///< Position of the center of mass, in W.
   Quat orientation;                 ///< Rotation from the orientation at t = 0.
-  Vec3 angular_velocity_rad_per_s;  ///< In W.
+  Vec3 angular_velocity_rad_per_s;  ///< Angular velocity, in W.
 };
 
 /// Returns the axial force: eq. 4 in the middle, eq. 6 along the strut. `forces`: on all bodies,

@@ -96,7 +96,7 @@ struct Scene {
   double timestep = 0.002;
   bool clamps_controls = true, has_contacts = true, only_pairs = false, has_dry_friction = true,
        has_limits = true;
-  std::vector<int> disabled_groups;  ///< Disabled groups of actuators.
+  std::vector<int> disabled_groups;  ///< Groups of actuators that are disabled.
   std::vector<Body> bodies;
   std::vector<Shape> shapes;
   std::vector<Site> sites;

@@ -138,7 +138,7 @@ std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out
   const std::string inputs = (place / "inputs.yaml").string();
   std::error_code failed;
   if (std::filesystem::exists(inputs, failed) &&
-      !std::filesystem::is_regular_file(inputs, failed)) {  // a pipe could block
+      !std::filesystem::is_regular_file(inputs, failed)) {  // reading a pipe could block
     out.Error("run.inputs_not_regular", {inputs},
               "the file with the inputs of the run is not a regular file");
     return std::nullopt;

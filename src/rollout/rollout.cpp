@@ -123,7 +123,7 @@ class LaneRollouts final : public Rollouts {
   const RolloutOptions options_;
   std::shared_ptr<const Model> model_;
   base::ThreadPool pool_;
-  std::vector<std::unique_ptr<Workplace>> places_;  ///< Per thread.
+  std::vector<std::unique_ptr<Workplace>> places_;  ///< Workplace of each thread.
   Simd simd_ = Simd::kScalar;
   int lanes_ = 1;
 };

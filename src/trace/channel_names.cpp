@@ -67,7 +67,7 @@ std::string TableUnit(const std::string& name) {
 namespace taut {
 
 std::string UnitOfName(std::string_view name) {
-  name.remove_prefix(name.rfind('/') + 1);  // npos + 1 is 0
+  name.remove_prefix(name.rfind('/') + 1);  // without a slash, npos + 1 is 0
   const base::NameUnit unit = base::UnitAtEnd(name);
   // Without a known unit before "per", as in turns_per_s, the unit is 1 instead of 1/s.
   return unit.over.empty() ? "1" : unit.Text();

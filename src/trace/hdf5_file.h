@@ -14,7 +14,7 @@ namespace taut::trace {
 
 /// Dataset of the file.
 struct Hdf5Column {
-  std::string name;  ///< Without leading slash.
+  std::string name;  ///< Path of the dataset, without leading slash.
   std::string unit;
   Hdf5Id dataset;
   hsize_t rows = 0;

@@ -12,7 +12,7 @@ namespace taut::trace {
 
 struct Hdf5Table {
   int rows = 0, columns = 0;
-  std::vector<double> values;  ///< Row by row.
+  std::vector<double> values;  ///< Numbers of the table, row by row.
 };
 
 /// Reads a two-dimensional dataset of any number type, and adds the number of values to `budget`.

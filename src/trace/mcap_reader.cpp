@@ -106,7 +106,7 @@ bool McapReader::Records(std::string_view bytes, const std::function<bool(const 
     } else if (op == kMessageOp) {
       McapMessage message;
       message.channel = static_cast<std::uint16_t>(of.Int(2));
-      of.Int(4);  // sequence
+      of.Int(4);  // skips the sequence number
       message.log_time_ns = of.Int(8);
       const std::uint64_t published_ns = of.Int(8);
       if (message.log_time_ns == 0) message.log_time_ns = published_ns;
@@ -118,7 +118,7 @@ bool McapReader::Records(std::string_view bytes, const std::function<bool(const 
     } else if (op == kChunkOp && !in_chunk) {
       if (!Chunk(content, use)) return false;
     } else if (op == kMetadataOp) {
-      of.Text();  // name
+      of.Text();  // skips the name
       Fields pairs(of.Text());
       while (pairs.good && !pairs.rest().empty()) {
         const std::string key(pairs.Text());
@@ -136,7 +136,7 @@ bool McapReader::Records(std::string_view bytes, const std::function<bool(const 
 bool McapReader::Chunk(std::string_view content,
                        const std::function<bool(const McapMessage&)>& use) {
   Fields of(content);
-  of.Int(8), of.Int(8), of.Int(8), of.Int(4);  // times, size, checksum
+  of.Int(8), of.Int(8), of.Int(8), of.Int(4);  // skips times, size and checksum
   const std::string compression(of.Text());
   const std::string_view records = of.Raw(of.Int(8));
   if (!of.good) return Damaged("a chunk is too short");

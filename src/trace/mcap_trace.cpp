@@ -134,7 +134,7 @@ void JsonNumbers(const nlohmann::json& json, const std::string& path, int depth,
     number(path, json.get<bool>() ? 1 : 0);
   } else if (json.is_number()) {
     number(path, json.get<double>());
-  } else if (json.is_null()) {  // taut writes NaN so
+  } else if (json.is_null()) {  // taut writes NaN as null
     number(path, std::numeric_limits<double>::quiet_NaN());
   }
 }

@@ -69,7 +69,8 @@ std::optional<Ros2Message> Ros2Message::Parse(const std::string& name,
     std::istringstream words{std::string(text)};
     Field field;
     words >> field.type >> field.name;
-    if (field.name.empty() || field.name.find('=') != field.name.npos) continue;  // a constant
+    // Skip constants.
+    if (field.name.empty() || field.name.find('=') != field.name.npos) continue;
     std::string next;
     words >> next;
     if (next.starts_with('=')) continue;
@@ -156,7 +157,7 @@ class Ros2Message::Decoder {
   }
 
   std::string_view Text() {
-    const std::uint64_t size = Bits(4);  // with a terminating NUL
+    const std::uint64_t size = Bits(4);  // the size includes a terminating NUL
     if (!good_ || size > data_.size() - at_) {
       good_ = false;
       return {};

@@ -3,7 +3,7 @@
 import type { Points } from "./points";
 import { lastAtMost, Signal } from "./util";
 
-const AROUND = 32; // rows to either side
+const AROUND = 32; // number of rows on either side
 
 export interface Row {
   /** NaN: there is none. */

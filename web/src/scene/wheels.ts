@@ -9,7 +9,7 @@ import { type Part, release } from "./part";
 import { worldPoint } from "./poses";
 
 const SHARE = 0.97;
-const THICKNESS = 0.25; // relative to the radius
+const THICKNESS = 0.25; // thickness of a disc, relative to its radius
 const Y = new Vector3(0, 1, 0); // axis of three.js's cylinders
 
 export class Wheels implements Part {

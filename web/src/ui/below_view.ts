@@ -2,7 +2,7 @@
 // robot.
 import { el } from "../util";
 
-const ONE_COLUMN = "(max-width: 900px)"; // as in style.css
+const ONE_COLUMN = "(max-width: 900px)"; // same width as in style.css
 
 /** Puts `parts` into the view, or into the returned element, which belongs directly below it. */
 export function belowView(view: HTMLElement, parts: readonly HTMLElement[]): HTMLElement {
