@@ -23,7 +23,7 @@ struct CableGroup {
 /// of the cables.
 std::vector<CableGroup> GroupCables(const RobotSpec& robot, std::size_t most);
 
-/// Range of a quantity.
+/// Range of a quantity over a group.
 struct Range {
   double low = INFINITY, high = -INFINITY;
 
@@ -51,7 +51,7 @@ class CappedLines {
 
   /// `most`: number of lines besides the verdict.
   explicit CappedLines(std::size_t most = kMost) : most_(most) {}
-  /// All lines but the first, the verdict.
+  /// Takes all lines but the first, which is the verdict.
   explicit CappedLines(const std::vector<std::string>& all) : lines_(all.begin() + 1, all.end()) {}
 
   /// Adds an indented line; an empty text adds none.

@@ -24,7 +24,7 @@ std::vector<std::string> WithOverrides(std::vector<std::string> words,
 /// Returns a validator for numbers. The validator of CLI11 accepts NaN and prints 1e-9 as 0.000000.
 std::function<std::string(const std::string&)> NumberWithin(double least, double most);
 
-/// Same as `NumberWithin` for integers.
+/// Returns a validator for integers, like `NumberWithin`.
 std::function<std::string(const std::string&)> WholeNumberWithin(std::uint64_t least,
                                                                  std::uint64_t most);
 

@@ -36,7 +36,7 @@ struct PlotArguments {
   std::optional<double> height_mm, from_s, to_s;
 };
 
-/// Channel to draw.
+/// Channel to draw, with its unit.
 struct Drawn {
   std::string name, unit;
 };

@@ -130,7 +130,7 @@ int LoadCell(const CalibrateArguments& args) {
   if (!desk) return exit;
   const auto motor = FindMotor(*desk, args.cable);
   if (!motor) return kBadInput;
-  // Least squares: force = gain (counts - zero).
+  // Sums for the least-squares line: force = gain (counts - zero).
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   std::vector<std::pair<double, double>> points;
   for (const double force_n : args.forces_n) {

@@ -40,7 +40,7 @@ int Scan(const RobotArguments& args) {
   }
   link::Requests requests(adapter);
   std::vector<Found> all;
-  // The I2C specification reserves the other addresses.
+  // Skip addresses that the I2C specification reserves.
   for (int address = 0x08; address <= 0x77; ++address) {
     if (!adapter.Test(static_cast<std::uint8_t>(address))) continue;
     Found one{address, std::nullopt};

@@ -106,7 +106,7 @@ int RunOn(RobotConsole& desk, const RunArguments& args, const ExperimentSpec& ex
       shown_s = progress.time_s;
       ShowProgress(progress, driver.state(), terminal);
     }
-    // No cycles run without an adapter.
+    // Without an adapter no cycles run, so update the page here.
     if (view && !driver.state().link.connected) view->AfterCycle(driver.state());
     return !desk.LookForStop();
   };

@@ -100,7 +100,7 @@ std::unique_ptr<RobotView> RobotView::Open(RobotConsole& desk, const std::string
 }
 
 RobotView::~RobotView() {
-  // The console may still turn motors off.
+  // The console may still turn motors off, but without calls of this view.
   desk_.on_cycle = {};
   desk_.on_event = {};
   End();

@@ -12,7 +12,7 @@ namespace taut::viewer {
 
 class JoinedRobots {
  public:
-  /// Same as `Page::Add`.
+  /// Adds a robot, as `Page::Add` does.
   int Add(const ModelDef& robot, const std::string& name, const Vec3& at_m);
 
   std::size_t size() const { return robots_.size(); }

@@ -17,7 +17,7 @@ class Restarts {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Inputs for reading the files.
+  /// Inputs of a start: the file and its changes.
   struct Inputs {
     std::string path;                ///< Path of the experiment.
     Overrides overrides;             ///< Overrides of its parameters; later changes are added.

@@ -5,7 +5,7 @@
 
 namespace taut::viewer {
 
-/// Not thread-safe.
+/// Schedule of simulated times on the wall clock. Not thread-safe.
 class Pace {
  public:
   using Clock = std::chrono::steady_clock;

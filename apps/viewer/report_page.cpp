@@ -156,7 +156,7 @@ Json ReportOf(const Recorded& recorded, std::size_t max_numbers) {
     const Recorded& run = *recorded.compared()[k];
     report["scene"]["compared"][k]["channels"] = ToJson(Plotted(run.trace().channels));
     report["rows"].push_back(RowsOf(recorded, run.trace(), static_cast<int>(k + 1), share));
-    // difference to this run, the common reference
+    // difference of the compared run from this run
     report["comparisons"].push_back(
         Json::parse(ComparisonJson(Compare(run.trace(), recorded.trace(), options), run.run_name(),
                                    recorded.run_name()),

@@ -8,7 +8,7 @@
 namespace taut::viewer {
 namespace {
 
-/// Boards time out after 0.1 s; a cycle takes 0.01 s.
+/// Age of a cycle that counts as silence. Boards time out after 0.1 s; a cycle takes 0.01 s.
 constexpr double kSilence_s = 0.3;
 
 const char* StageName(link::Stage stage) {

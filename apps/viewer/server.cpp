@@ -31,7 +31,7 @@ struct Server::Impl {
   Impl(Session& the_session, WebFiles the_files, ServerOptions the_options)
       : session(the_session), files(std::move(the_files)), options(std::move(the_options)) {}
 
-  /// Takes over WebSockets, answers all other requests.
+  /// Takes over WebSocket requests and answers all other requests.
   std::optional<HttpResponse> Serve(const HttpRequest& request, beast::tcp_stream& stream) {
     const std::string target(request.target().substr(0, request.target().find('?')));
     const Access access = AccessOf(request, options);
@@ -134,7 +134,7 @@ struct Server::Impl {
 
   void EndOnSignals();
 
-  /// Called on the session's thread.
+  /// Requests a call of `Fetch`. Called on the session's thread.
   void Wake() {
     if (woken.exchange(true)) return;
     asio::post(io, [this] { Fetch(); });

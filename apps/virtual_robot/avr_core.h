@@ -18,7 +18,7 @@ struct avr_ioport_t;
 
 namespace taut::virtual_robot {
 
-/// Level of a pin set from outside.
+/// Level of a pin, set from outside of the chip.
 struct PinLevel {
   std::uint64_t cycle = 0;
   char port = 'D';

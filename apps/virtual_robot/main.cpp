@@ -29,7 +29,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// Same as for `taut` (docs/cli.md).
+/// Exit statuses, the same as those of `taut` (docs/cli.md).
 enum Exit : int { kOk = 0, kFailed = 1, kUsage = 2, kBadInput = 3 };
 
 struct Arguments {

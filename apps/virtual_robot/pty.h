@@ -11,7 +11,7 @@
 
 namespace taut::virtual_robot {
 
-/// Not thread-safe.
+/// Pseudo-terminal with a symbolic link. Not thread-safe.
 class Pty {
  public:
   /// Opens a pseudo-terminal and, if `link` is not empty, creates a symbolic link to it as a

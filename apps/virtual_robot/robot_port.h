@@ -6,7 +6,7 @@
 
 namespace taut::virtual_robot {
 
-/// Not thread-safe.
+/// Port that exchanges bytes with the emulated adapter. Not thread-safe.
 class RobotPort final : public link::Port {
  public:
   /// The robot must outlive the port.

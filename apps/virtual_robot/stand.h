@@ -7,7 +7,7 @@
 
 namespace taut::virtual_robot {
 
-/// For use on the robot's thread only.
+/// Releases the robot when all drivers are on. For use on the robot's thread only.
 class Stand {
  public:
   /// Time for which the motor drivers of all boards must be on without interruption.

@@ -23,7 +23,7 @@ constexpr int kWaitingClients = 16;
 /// Formats JSON; NaN and infinity, which JSON lacks, become null.
 std::string Line(const Json& json) { return json.dump() + '\n'; }
 
-/// Applies `text` to each element.
+/// Returns a JSON list of the results of `text` for each element.
 template <class List, class F>
 Json Array(const List& of, F&& text) {
   Json array = Json::array();

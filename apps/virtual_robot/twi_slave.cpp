@@ -6,7 +6,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-// Bits of TWCR.
+// Bits of the control register TWCR.
 constexpr std::uint8_t kTwint = 0x80, kTwea = 0x40, kTwsto = 0x10, kTwwc = 0x08, kTwen = 0x04,
                        kTwie = 0x01;
 constexpr std::uint8_t kGeneralCallEnable = 0x01;  // bit in TWAR

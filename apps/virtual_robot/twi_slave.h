@@ -12,7 +12,7 @@ struct avr_twi_t;
 
 namespace taut::virtual_robot {
 
-/// Status codes, TWSR without the prescaler.
+/// Status codes: the register TWSR without the prescaler.
 enum TwiStatus : std::uint8_t {
   kTwiBusError = 0x00,
   kTwiAddressed = 0x60,  ///< Addressed for writing; acknowledged.

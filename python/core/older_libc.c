@@ -25,7 +25,7 @@ HIDDEN int fstatat(int folder, const char* path, struct stat* out, int flags) {
 /* 2.32: an optimization of libstdc++; false is always correct. */
 HIDDEN char __libc_single_threaded = 0;
 
-/* 2.36 */
+/* 2.36: arc4random. */
 extern long getrandom(void* buffer, size_t size, unsigned flags);
 HIDDEN uint32_t arc4random(void) {
   uint32_t number = 0;

@@ -68,7 +68,7 @@ void Header(const Json& json, TableLayout& table, MappingJson& values) {
   }
 }
 
-/// Separator, decimal mark and encoding.
+/// Reads separator, decimal mark and encoding.
 void Text(const Json& json, TableLayout& table, MappingJson& values) {
   constexpr std::string_view kSeparators[] = {",", ";", "|", "\t", " "};
   constexpr std::string_view kDecimals[] = {".", ","};

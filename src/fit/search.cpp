@@ -247,7 +247,7 @@ void Search::Choose(std::size_t t, std::span<Trial> trials,
     const double ratio = trial.predicted > 0 ? gained / trial.predicted : 1.0;
     const bool small = gained <= options_.cost_tolerance * track.cost &&
                        trial.predicted <= options_.cost_tolerance * track.cost;
-    // Nielsen's rule (F.5).
+    // Nielsen's rule for the damping (F.5).
     const double turned = 2.0 * ratio - 1.0;
     track.damping = trial.damping * std::max(1.0 / 3.0, 1.0 - turned * turned * turned);
     track.damping = std::clamp(track.damping, kLeastDamping, kMostDamping);

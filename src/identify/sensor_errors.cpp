@@ -36,7 +36,7 @@ std::vector<FitAlias> SensorErrors(const FitSpec& spec, const std::vector<FitPoi
     FitAlias& alias = errors[name];
     alias.name = name, alias.unit = gain ? "" : p.unit, alias.neutral = gain ? 1 : 0;
     alias.slope.resize(points.size());
-    // residual = (gain * computed + offset - measured) / sd
+    // Slopes of residual = (gain * computed + offset - measured) / sd at gain 1 and offset 0
     alias.slope[i] = gain ? p.measured / p.sd + residual[i] : 1 / p.sd;
   };
   for (std::size_t i = 0; i < points.size(); ++i) {

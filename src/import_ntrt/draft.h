@@ -68,7 +68,7 @@ struct Parameter {
 };
 std::vector<Parameter> TakeOutParameters(std::vector<Group>& groups);
 
-// Blocks of the model file.
+// Each function returns a block of the model file.
 std::string BuildersText(const Draft& draft);
 std::string PartsText(const Model& model, const Draft& draft, double length_unit_m);
 

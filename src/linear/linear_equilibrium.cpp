@@ -69,7 +69,7 @@ bool DescribeTick(const ExperimentSpec& e, Rest& rest) {
     rest.step_s = {e.step_s};
     return true;
   }
-  // Same rule as in simulations (plant/schedule.h).
+  // The number of steps follows the rule of simulations (plant/schedule.h).
   const double count = std::max(1.0, std::ceil(period_s / e.step_s - 1e-6));
   double step_s = period_s / count;
   if (std::fabs(step_s - e.step_s) < 1e-9 * e.step_s) step_s = e.step_s;

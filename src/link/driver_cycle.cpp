@@ -87,7 +87,7 @@ void Driver::BeginCycle() {
 void Driver::AddRequest() {
   for (Waiting& waiting : waiting_) waiting.rest = std::max(0, waiting.rest - 1);
   for (Waiting& waiting : waiting_) {
-    // A board answers only its last request.
+    // A board answers only its last request, so a board has one open request at a time.
     const bool first = &*std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& one) {
       return one.board == waiting.board;
     }) == &waiting;

@@ -159,7 +159,7 @@ void Driver::EndCycle() {
   link.mean_cycle_s += (link.cycle_s - link.mean_cycle_s) * share;
   link.mean_lateness_s += (link.lateness_s - link.mean_lateness_s) * share;
 
-  // End requests that received no answer.
+  // Give up requests that received no answer.
   for (std::size_t i = 0; i < waiting_.size();) {
     if (waiting_[i].tries < kRequestTries || waiting_[i].rest > 1) {
       ++i;

@@ -11,7 +11,7 @@ namespace {
 
 using board::Mode;
 
-/// Rows in `rows_`.
+/// Rows of the matrix `rows_`.
 enum Row { kRestLength, kLength, kRate, kTension, kElastic, kStiffness, kCommanded, kRows };
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace taut::trace {
 
-/// Dataset of the file.
+/// Dataset with the values of one channel, or with the times.
 struct Hdf5Column {
   std::string name;  ///< Path of the dataset, without leading slash.
   std::string unit;

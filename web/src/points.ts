@@ -6,7 +6,7 @@ type Values = (number | null)[]; // null: not a number
 
 /** Each point represents a block of rows; for a single row, first, min and max are the value. */
 export interface Points {
-  /** For the first row of each block. */
+  /** Time of the first row of each block [s]. */
   t: number[];
   first: Values;
   min: Values;

@@ -213,7 +213,7 @@ export interface WantSeriesMessage {
   /** Number of the request, returned in the reply. */
   id: number;
   channel: string;
-  /** 0 (default): the displayed run; k: the k-th compared run. */
+  /** Run: 0 (default) for the displayed run, k for the k-th compared run. */
   source?: number;
   /** Start of the time span [s]. */
   t0: number;

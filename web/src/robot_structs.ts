@@ -29,7 +29,7 @@ export interface BoardStatus {
   there: boolean;
   /** The board answers and has no fault, timeout or stop. */
   well: boolean;
-  /** off, hold, impedance, stopped ... */
+  /** Mode of the board: off, hold, impedance, stopped ... */
   mode: string;
   /** The references of the board's encoders are set. */
   referenced: boolean;
@@ -57,7 +57,7 @@ export interface BoardStatus {
 
 export interface MotorStatus {
   tension_n: number;
-  /** null: no set point */
+  /** Set point of the tension; null: none. */
   setpoint_n: number;
   /** Rest length, measured by the encoder. */
   rest_length_m: number;

@@ -6,7 +6,7 @@ import { lastAtMost, Signal } from "./util";
 const AROUND = 32; // number of rows on either side
 
 export interface Row {
-  /** NaN: there is none. */
+  /** Time of the row [s]; NaN: there is no row. */
   time_s: number;
   value: number;
   /** 1: every row is available; n: only every n-th. */

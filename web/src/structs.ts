@@ -3,7 +3,7 @@ import type { Robot } from "./robot_structs";
 export type * from "./robot_structs";
 
 export type Vec3 = [number, number, number];
-/** w, x, y, z */
+/** Unit quaternion: w, x, y, z. */
 export type Quat = [number, number, number, number];
 
 /** Shape of a body, in the body's frame (origin: center of mass). */
@@ -31,7 +31,7 @@ export interface Shape {
 
 export interface Body {
   name: string;
-  /** 0: unknown */
+  /** Mass; 0: unknown. */
   mass_kg: number;
   fixed: boolean;
   /** Center of mass at the start, in W. */
@@ -74,9 +74,9 @@ export interface Wheel {
 /** Cable through its attachments, in order. */
 export interface Cable {
   name: string;
-  /** Empty: unknown. */
+  /** Attachments in order; empty: unknown. */
   attachments: Attachment[];
-  /** 0: unknown */
+  /** Stiffness; 0: unknown. */
   stiffness_n_per_m: number;
   actuated: boolean;
   /** Tags of the cable's pair in the model, without the pair's name. */
@@ -241,7 +241,7 @@ export interface ComparedRun {
 /** A channel over a time span, in blocks of `level` rows; at level 1, first, min and max are the value. The level is 1 if the span's rows, with one beyond each end, do not exceed the requested points. In a report, it is the level of the report's Rows. */
 export interface SeriesData {
   channel: string;
-  /** 0: the displayed run; k: the k-th compared run. */
+  /** Run: 0 for the displayed run, k for the k-th compared run. */
   source: number;
   /** Rows per block. */
   level: number;
@@ -257,7 +257,7 @@ export interface SeriesData {
 
 /** The plotted channels of a trace from its start to its end. */
 export interface Rows {
-  /** 0: the displayed run; k: the k-th compared run. */
+  /** Run: 0 for the displayed run, k for the k-th compared run. */
   source: number;
   /** 1: all rows. Larger: blocks of this number of rows, as in SeriesData. */
   level: number;
@@ -302,9 +302,9 @@ export interface Scene {
   cables: Cable[];
   joints: Joint[];
   terrain: Terrain[];
-  /** Empty unless live. */
+  /** Parameters of a live run; otherwise empty. */
   parameters: Parameter[];
-  /** Empty unless live. */
+  /** Controls of a live run; otherwise empty. */
   controls: Control[];
   /** Channels that want_series can request, including node positions derived from poses; in a live run, up to the present. */
   channels: Channel[];

@@ -13,7 +13,7 @@ export interface Checked {
 
 export interface Mark {
   time_s: number;
-  /** 16 hexadecimal digits. */
+  /** Hash of the state: 16 hexadecimal digits. */
   hash: string;
 }
 

@@ -20,7 +20,7 @@ export interface Complaint {
   file: string;
   line: number;
   column: number;
-  /** False: a warning. */
+  /** True: an error; false: a warning. */
   error: boolean;
   what: string;
   hint: string;

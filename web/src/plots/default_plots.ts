@@ -10,7 +10,7 @@ import type { PlotSpec } from "./layouts";
 /** Up to this number, all cables are plotted; otherwise those with the largest tensions. */
 const FEW_CABLES = 24;
 const LARGEST = 12;
-/** Same for plots of groups. */
+/** Up to this number, plots of groups contain all cables. */
 const FEW_LINES = 48;
 const LARGEST_LINES = 24;
 

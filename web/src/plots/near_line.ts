@@ -2,7 +2,7 @@
 import type uPlot from "uplot";
 import { el, number } from "../util";
 
-/** Lines in the box. */
+/** Maximum number of lines in the box. */
 const MOST_LISTED = 7;
 const REACH_PX = 40;
 const WIDTH = { plain: 1.4, marked: 2.6 };

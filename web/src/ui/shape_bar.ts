@@ -68,7 +68,7 @@ export class ModePlayer {
     requestAnimationFrame(() => this.swing());
   }
 
-  /** Describes the mode that swings. */
+  /** Describes the mode that is animated. */
   info(): ShapeInfo | null {
     const place = this.playing.value;
     if (place === null) return null;
