@@ -336,7 +336,7 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "analyze", "Analyze the statics of a structure: equilibria, self-stress, modes.");
   AddInput(*analyze, "file", {"model", "experiment"}, args->path, "Model or experiment file (YAML)")
       ->required();
-  analyze->add_option("--set", args->set, "Parameter of the file")
+  analyze->add_option("--set", args->set, "Set a parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   analyze

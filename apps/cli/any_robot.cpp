@@ -23,7 +23,7 @@ std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& 
 void AddPlacedRobot(CLI::App& command, PlacedRobotArguments& args) {
   AddInput(command, "file", {"model", "experiment"}, args.path, "Model or experiment file (YAML)")
       ->required();
-  command.add_option("--set", args.set, "Parameter of the file")
+  command.add_option("--set", args.set, "Set a parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   command

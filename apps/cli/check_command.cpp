@@ -220,7 +220,7 @@ void AddCheck(CLI::App& app, int& exit_code) {
   AddInput(*check, "file", {"model", "experiment", "gait", "study", "fit"}, args->path,
            "Model, experiment, gait, study or fit file (YAML)")
       ->required();
-  check->add_option("--set", args->set, "Parameter of the file")
+  check->add_option("--set", args->set, "Set a parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   auto* couplings = check->add_flag(

@@ -53,7 +53,7 @@ void AddExportMjcf(CLI::App& export_, int& exit_code) {
   mjcf->add_flag("--keyframe", args->options.keyframe,
                  "Use rest lengths as controls, and write a keyframe `start` with controls and "
                  "velocities; otherwise controls are changes of rest lengths");
-  mjcf->add_option("--set", args->set, "Parameter of the model")
+  mjcf->add_option("--set", args->set, "Set a parameter of the model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   mjcf->add_option("--out", args->out, "Output file (default: standard output)")

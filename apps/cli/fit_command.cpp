@@ -274,7 +274,7 @@ void AddFit(CLI::App& app, int& exit_code) {
   CLI::App* fit =
       app.add_subcommand("fit", "Estimate parameters of models and experiments from measurements.");
   AddInput(*fit, "fit", {"fit"}, args->path, "Fit file (YAML)")->required();
-  fit->add_option("--set", args->set, "Parameter of the fit, its experiments or models")
+  fit->add_option("--set", args->set, "Set a parameter of the fit, its experiments or models")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   fit->add_option("--out", args->out, "Output folder (default: runs/<fit>)")->option_text("FOLDER");

@@ -90,7 +90,7 @@ void AddGait(CLI::App& app, int& exit_code) {
   CLI::App* gait = app.add_subcommand("gait", "Create, convert and list gaits.");
   gait->require_subcommand(1);
   const auto add_set = [&](CLI::App* command) {
-    command->add_option("--set", args->set, "Parameter of the model")
+    command->add_option("--set", args->set, "Set a parameter of the model")
         ->option_text("NAME=VALUE")
         ->allow_extra_args(false);
   };

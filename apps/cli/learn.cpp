@@ -172,7 +172,7 @@ void AddLearn(CLI::App& app, int& exit_code) {
           "Study file (YAML); with --best and --top: folder of a study; with --parameters: "
           "experiment file")
       ->required();
-  learn->add_option("--set", args->set, "Parameter of the study, experiment or model")
+  learn->add_option("--set", args->set, "Set a parameter of the study, experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   learn->add_option("--out", args->out, "Output folder (default: runs/<study>)")

@@ -48,7 +48,7 @@ void AddModelFile(CLI::App& command, RobotArguments& args) {
 
 void AddModel(CLI::App& command, RobotArguments& args) {
   AddModelFile(command, args);
-  command.add_option("--set", args.set, "Parameter of the model")
+  command.add_option("--set", args.set, "Set a parameter of the model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
 }

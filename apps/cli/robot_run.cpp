@@ -186,7 +186,7 @@ void AddRobotRun(CLI::App& robot, int& exit_code) {
   AddInput(*run, "experiment", {"experiment"}, args->experiment, "Experiment file (YAML)")
       ->required();
   AddPort(*run, *args);
-  run->add_option("--set", args->set, "Parameter of the experiment or model")
+  run->add_option("--set", args->set, "Set a parameter of the experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   AddDriving(*run, *args);

@@ -212,7 +212,7 @@ void AddRun(CLI::App& app, int& exit_code) {
   CLI::App* run = app.add_subcommand("run", "Simulate an experiment and record a trace.");
   AddInput(*run, "experiment", {"experiment"}, args->experiment, "Experiment file (YAML)")
       ->required();
-  run->add_option("--set", args->set, "Parameter of the experiment or model")
+  run->add_option("--set", args->set, "Set a parameter of the experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   run->add_option("--step_s", args->step_s, "Time step [s] (overrides the file)")

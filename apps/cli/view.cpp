@@ -181,7 +181,7 @@ void AddView(CLI::App& app, int& exit_code) {
   AddInput(*view, "--calibration", {"calibration"}, args->robot.calibration,
            "With --robot: calibration file to set on the boards")
       ->option_text("FILE");
-  view->add_option("--set", args->set, "Parameter of the experiment or model")
+  view->add_option("--set", args->set, "Set a parameter of the experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   view->add_option("--step_s", args->step_s, "Time step [s] (overrides the file)")

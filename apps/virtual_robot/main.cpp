@@ -29,7 +29,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// Exit statuses, the same as those of `taut` (docs/cli.md).
+/// Exit statuses, as for the command `taut` (docs/cli.md).
 enum Exit : int { kOk = 0, kFailed = 1, kUsage = 2, kBadInput = 3 };
 
 struct Arguments {
@@ -279,7 +279,8 @@ int Main(int argc, char** argv) {
          "Experiment with robot and terrain, instead of --model; its controllers are ignored")
       ->option_text("FILE")
       ->excludes(model);
-  app.add_option("--set", arguments.set, "Parameter of the model")->option_text("NAME=VALUE ...");
+  app.add_option("--set", arguments.set, "Set a parameter of the model")
+      ->option_text("NAME=VALUE ...");
   app.add_option("--firmware", arguments.firmware,
                  "Firmware of the boards (default: shipped with taut)")
       ->option_text("ELF");
@@ -328,8 +329,9 @@ int Main(int argc, char** argv) {
       ->option_text("S")
       ->check(CLI::Range(0.0, 1e9))
       ->needs(run);
-  app.add_option("--board", arguments.board,
-                 "With --run: parameter of all motors or boards (docs/hardware/parameters.md)")
+  app.add_option(
+         "--board", arguments.board,
+         "With --run: set a parameter of all motors or boards (docs/hardware/parameters.md)")
       ->option_text("NAME=VALUE ...")
       ->needs(run);
   app.add_option("--calibration", arguments.calibration,
