@@ -13,7 +13,7 @@ TEMPLATE = pathlib.Path(__file__).with_name("hills.md.in")
 TITLE = "### On hills"
 GROUNDS = {"plane": "plane", "hills": "hills", "many": "10^7 cells"}
 BALL = "ball@level"
-COMPANY = "\nOther programs ran on the machine at the same time: ratios are more reliable than times, and both have to be measured again on an idle machine."
+COMPANY = "\nOther programs ran on the machine at the same time. Ratios are therefore more reliable than times; times and ratios have to be measured again on an idle machine."
 
 
 def lanes_of(name, lanes):

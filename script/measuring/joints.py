@@ -11,7 +11,7 @@ KIND = "joints"
 NOT_MEASURED = "Not measured in this run."
 TEMPLATE = pathlib.Path(__file__).with_name("joints.md.in")
 TITLE = "### With joints"
-COMPANY = "\nOther programs ran on the machine at the same time: the times are too long and have to be measured again on an idle machine."
+COMPANY = "\nOther programs ran on the machine at the same time, so the times are too long and have to be measured again on an idle machine."
 
 
 def costs(items):

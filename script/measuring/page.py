@@ -50,8 +50,8 @@ def which_mujoco(items):
     if version == wasm.ABSENT:
         words += "MuJoCo 3 was not measured in this run, which requires node and npm's `@mujoco/mujoco`."
     else:
-        words += (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. It loads the same "
-                  "MJCF as Debian's MuJoCo, except for a bound on memory, with the same solver, number of iterations and "
+        words += (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. MuJoCo 3 loads the same "
+                  "MJCF file as Debian's MuJoCo, except for a bound on memory, with the same solver, number of iterations and "
                   "tolerance; other settings have the defaults of each version. ")
         apart = [item["apart_m"] for item in items if "apart_m" in item]
         words += ("A model is measured only if both versions have the same bodies and masses, and positions within 1e-9 m after "
@@ -142,7 +142,7 @@ def spread(items):
 def company(machine):
     if not shared(machine):
         return ""
-    return "\nOther programs ran on the machine at the same time: rows for several threads are unreliable."
+    return "\nOther programs ran on the machine at the same time, so rows for several threads are unreliable."
 
 
 def text(items):
