@@ -12,6 +12,7 @@
 #include "tests/scenes/jumble.h"
 #include "tests/scenes/prism3.h"
 #include "tests/scenes/tetraspine3.h"
+#include "tests/scenes/walker.h"
 
 namespace taut::test {
 
@@ -71,8 +72,15 @@ inline std::vector<ModelDef> VariedModels() {
   ModelDef wedge_along_slip = wedge;
   wedge_along_slip.name = "block_in_wedge_along_slip";
   wedge_along_slip.friction_law = FrictionLaw::kAlongSlip;
-  return {wedge,       wedge_along_slip, scenes::Tetraspine().Def(), along_slip,
-          prism.Def(), block.Def(),      scenes::Jumble().Def(),     MotorizedSpine()};
+  return {wedge,
+          wedge_along_slip,
+          scenes::Tetraspine().Def(),
+          along_slip,
+          prism.Def(),
+          block.Def(),
+          scenes::Jumble().Def(),
+          MotorizedSpine(),
+          scenes::Walker().Def()};
 }
 
 /// Sets the start of world `world` as determined by `seed`: places, velocities, parameters.
@@ -80,20 +88,23 @@ inline void Scatter(WorldBatch& batch, int world, int seed) {
   const ModelDef& def = batch.model().def();
   Dice dice(seed);
   const int bodies = static_cast<int>(def.bodies.size());
-  const Vec3 together = dice.Roll3(0.2);
+  const Vec3 together = dice.Roll3(0.2), speed = dice.Roll3(0.5);
+  const bool jointed = !def.joints.empty();  // then all bodies move alike
   for (int b = 0; b < bodies; ++b) {
     batch.SetParameter(world, Parameter::kBodyMass, b,
                        def.bodies[static_cast<std::size_t>(b)].mass_kg * (1 + dice.Roll(0.2)));
     BodyState state = batch.Body(world, b);
     // Every third world stays upright at its place; the others start higher and oblique.
-    if (seed % 3 != 0) {
+    if (seed % 3 != 0 && jointed) {
+      state.position_m = state.position_m + together + Vec3{0, 0, 0.2};
+    } else if (seed % 3 != 0) {
       state.position_m = state.position_m + together + dice.Roll3(0.01) + Vec3{0, 0, 0.2};
       state.orientation = scenes::Turn({0, 0, 1}, dice.Roll(3)) * state.orientation;
       if (seed % 3 == 2)
         state.orientation = scenes::Turn({1, 0, 0}, dice.Roll(3)) * state.orientation;
     }
-    state.velocity_m_per_s = dice.Roll3(0.5);
-    state.angular_velocity_rad_per_s = dice.Roll3(2);
+    state.velocity_m_per_s = jointed ? speed : dice.Roll3(0.5);
+    if (!jointed) state.angular_velocity_rad_per_s = dice.Roll3(2);
     batch.SetBodyState(world, b, state);
   }
   for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {

@@ -32,6 +32,28 @@ template <class W>
   }
 }
 
+/// Returns whether FindImplicitOf has the same inputs for a lane as for the first one.
+template <class W>
+bool HasCablesOfFirst(const View& m, const Rows<W>& s, int lane) noexcept {
+  bool same = true;
+  for (int c = 0; c < m.cable_count; ++c) {
+    same = same && s.stiff_k[c][lane] == s.stiff_k[c][0];
+    same = same && (s.damping[c][lane] > 0) == (s.damping[c][0] > 0);
+  }
+  for (int b = 0; b < m.body_count; ++b) {
+    same = same && (s.inv_mass[b][lane] > 0) == (s.inv_mass[b][0] > 0);
+  }
+  return same;
+}
+template <class W>
+void TakeImplicitOfFirst(const View& m, ImplicitMemory<W>& x, int lane) noexcept {
+  for (int b = 0; b < m.body_count; ++b) x.bodies[b].Set(lane, x.bodies[b][0]);
+  for (int c = 0; c < m.cable_count; ++c) {
+    x.limit[c].Set(lane, x.limit[c][0]);
+    x.damped[c].Set(lane, x.damped[c][0]);
+  }
+}
+
 /// Selects the implicit cables. The selection is valid for this step length until a parameter
 /// changes.
 template <class W>
@@ -44,7 +66,14 @@ void FindImplicit(const View& m, const Rows<W>& s, ImplicitMemory<W>& x, double 
   }
   x.any = false;
   if (!Any(stiff)) return;
-  for (int lane = 0; lane < W::kLanes; ++lane) FindImplicitOf(m, s, x, step_s, lane);
+  FindImplicitOf(m, s, x, step_s, 0);
+  for (int lane = 1; lane < W::kLanes; ++lane) {
+    if (HasCablesOfFirst(m, s, lane)) {
+      TakeImplicitOfFirst(m, x, lane);
+    } else {
+      FindImplicitOf(m, s, x, step_s, lane);
+    }
+  }
 }
 
 /// Resets the final poses before a solve. Returns the lanes with implicit cables. In these,

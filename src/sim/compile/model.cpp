@@ -48,6 +48,7 @@ class Compiler {
     sim::LayOutMotors(t_);
     sim::LayOutFriction(t_), sim::LayOutFloor(t_);
     sim::CoupleCables(t_);
+    sim::OrderWorld(t_);
     Check();
   }
 

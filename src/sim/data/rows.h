@@ -186,6 +186,7 @@ struct Scratch {
   W* unsolved;        ///< Per body: 1 in lanes that the lane-by-lane solver must solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
+  PrimalMemory<W> primal;
   ImplicitMemory<W> implicit;
   const MovingPair* moving_pairs = nullptr;  ///< Pairs with a clearance, in its order.
   int moving_count = 0;
@@ -238,6 +239,7 @@ struct Scratch {
     near_marks = room_.Take<uint64_t>((bodies_near + 63) / 64);
     lane.Take(m, room_);
     dual.Take(m, room_);
+    primal.Take(m, room_);
     implicit.Take(m, room_);
   }
 

@@ -171,4 +171,42 @@ struct DualMemory {
   }
 };
 
+/// Largest number of blocks of the system of a world with joints that is solved in lanes.
+inline constexpr int kMostPrimalBlocks = 1024;
+
+/// Memory to solve all joints, cables and contacts of a world in lanes (world_primal.inl). Empty if
+/// the world is not solved this way, which the model determines.
+template <class W>
+struct PrimalMemory {
+  Row<Unknown<W>> bodies;
+  Row<TurnFriction<W>> frictions;
+  Row<int> friction_row;  ///< Per friction of a ball joint: its first row among those of joints.
+  Row<typename JointRow<W>::Branch> joint_branches;
+  Row<typename TurnFriction<W>::Branch> friction_branches;
+  Row<typename CableRow<W>::Branch> cable_branches;
+  Row<typename ContactPoint<W, 1>::Branch> contact_branches;
+  Row<W> v, force, x, change;  ///< 6 per body.
+  Row<W> l, u, f;              ///< Per row.
+  Row<W> g;                    ///< Per constraint: rows^2.
+  Row<W> blocks;               ///< 36 per block.
+
+  void Take(const View& m, Room& room) noexcept {
+    const bool on = m.world_pattern->count > 0;
+    const int64_t n = m.world_pattern->count, contacts = on ? m.slot_count : 0;
+    const int64_t joints = on ? m.joint_row_count : 0, cables = on ? m.cable_count : 0;
+    const int64_t turns = on ? m.turn_friction_count : 0;
+    bodies = room.Take<Unknown<W>>(n);
+    frictions = room.Take<TurnFriction<W>>(turns);
+    friction_row = room.Take<int>(turns);
+    joint_branches = room.Take<typename JointRow<W>::Branch>(joints);
+    friction_branches = room.Take<typename TurnFriction<W>::Branch>(turns);
+    cable_branches = room.Take<typename CableRow<W>::Branch>(cables);
+    contact_branches = room.Take<typename ContactPoint<W, 1>::Branch>(contacts);
+    for (Row<W>* list : {&v, &force, &x, &change}) *list = room.Take<W>(kDofs * n);
+    for (Row<W>* list : {&l, &u, &f}) *list = room.Take<W>(joints + cables + 3 * contacts);
+    g = room.Take<W>(joints + cables + 9 * (contacts + turns));
+    blocks = room.Take<W>(kDofs * kDofs * static_cast<int64_t>(m.world_pattern->block_count));
+  }
+};
+
 }  // namespace taut::sim

@@ -90,6 +90,11 @@ class Tables final : public Model {
   std::vector<int> hinged;        ///< Per body: whether it is on a hinge.
   BlockPattern joint_pattern{};   ///< Pattern of the joint system, stored in the following vectors.
   std::vector<int> joint_slot, joint_below, joint_first_below;
+  /// Pattern of the system of all bodies, stored in the following vectors, with the body of each
+  /// number and its inverse. No bodies: the world is not solved by solve/world_primal.inl.
+  BlockPattern world_pattern{};
+  std::vector<int> world_bodies, world_number;
+  std::vector<int> world_slot, world_below, world_first_below;
   /// Chains: groups of bodies that joints connect to each other, but not to the world or to fixed
   /// or kinematic bodies. Start of each group in `free_chain_bodies`, with one more entry for the
   /// end; bodies of all groups.
@@ -147,5 +152,9 @@ void LayOutMotions(Tables& tables);
 
 /// Fills in coupling and largest_coupling.
 void CoupleCables(Tables& tables);
+
+/// Fills in world_pattern, if the model allows the solver of solve/world_primal.inl. Call it after
+/// cables, joints and motions are compiled.
+void OrderWorld(Tables& tables);
 
 }  // namespace taut::sim

@@ -100,6 +100,34 @@ class BodyMatrix {
     }
   }
 
+  /// Adds J^T G J of `count` constraints with one row each on the same bodies. g: one number per
+  /// constraint. Each block is loaded and stored only once.
+  template <class Law>
+  [[gnu::noinline]] void AddTogether(const Law* laws, int count, const Num* g) noexcept {
+    static_assert(Law::kRows == 1);
+    for (int k = 0; k < laws->link_count; ++k) {
+      const int column = laws->links[k].body;
+      if (column >= p_.count) continue;
+      for (int i = 0; i < laws->link_count; ++i) {
+        const int row = laws->links[i].body;
+        if (row >= p_.count || (symmetric_ && row < column)) continue;
+        Num* const block = At(row, column);
+        for (int x = 0; x < kDofs; ++x) {
+          Num line[kDofs];
+          for (int y = 0; y < kDofs; ++y) line[y] = block[kDofs * x + y];
+          for (int r = 0; r < count; ++r) {
+            Num ji[1][kDofs], jk[1][kDofs];
+            Unpack(laws[r].links[i], ji);
+            Unpack(laws[r].links[k], jk);
+            const Num f = g[r] * ji[0][x];
+            for (int y = 0; y < kDofs; ++y) line[y] += f * jk[0][y];
+          }
+          for (int y = 0; y < kDofs; ++y) block[kDofs * x + y] = line[y];
+        }
+      }
+    }
+  }
+
   /// Factors A = L D L^T or L U. Returns false if a pivot is not positive (L D L^T) or zero (L U).
   bool Factor() noexcept {
     if (bodies_only_) return symmetric_ ? FactorSymmetric<true>() : FactorGeneral<true>();

@@ -33,9 +33,13 @@ TAUT_INLINE void InvertSmall(const Num (&a)[R][R], Num (&out)[R][R]) noexcept {
   }
 }
 
-/// Computes G = A^-1 S and f = A^-1 r of a law: dl = f - G du. Returns whether G is symmetric.
+/// Compliance of all laws in plain Newton's method, relative to their inverse masses.
+inline constexpr double kNewtonCompliance = 1e-7;
+
+/// Computes G = A^-1 S and f = A^-1 r of a law: dl = f - G du. Returns the lanes in which G is
+/// symmetric.
 template <class Num, int R>
-TAUT_INLINE bool SolveLaw(const LinearLaw<Num, R>& linear, Num* g, Num* f) noexcept {
+TAUT_INLINE MaskOf<Num> SolveLaw(const LinearLaw<Num, R>& linear, Num* g, Num* f) noexcept {
   Num inverse[R][R];
   InvertSmall(linear.A, inverse);
   for (int i = 0; i < R; ++i) {
@@ -48,19 +52,20 @@ TAUT_INLINE bool SolveLaw(const LinearLaw<Num, R>& linear, Num* g, Num* f) noexc
       g[R * i + j] = sum;
     }
   }
-  bool symmetric = true;
+  auto symmetric = MaskOf<Num>::Splat(true);
   for (int i = 0; i < R; ++i) {
-    for (int j = 0; j < i; ++j) symmetric = symmetric && g[R * i + j].v == g[R * j + i].v;
+    for (int j = 0; j < i; ++j) symmetric = symmetric & (g[R * i + j] == g[R * j + i]);
   }
   return symmetric;
 }
 
-/// Computes g and f of a law near u and l, with the compliance e. Returns whether g is symmetric.
+/// Computes g and f of a law near u and l, with the compliance e. Returns the lanes in which g is
+/// symmetric.
 template <class Law, class Num>
-TAUT_INLINE bool StepOf(const Law& law, const typename Law::Branch& branch, const Num* u,
-                        const Num* l, Num e, Num* g, Num* f) noexcept {
+TAUT_INLINE MaskOf<Num> StepOf(const Law& law, const typename Law::Branch& branch, const Num* u,
+                               const Num* l, Num e, Num* g, Num* f) noexcept {
   if constexpr (requires { law.Step(branch, u, l, e, g, f); }) {
-    return law.Step(branch, u, l, e, g, f);
+    return MaskOf<Num>::Splat(law.Step(branch, u, l, e, g, f));
   } else {
     LinearLaw<Num, Law::kRows> linear;
     law.Linearize(branch, u, l, e, linear);
@@ -72,15 +77,14 @@ TAUT_INLINE bool StepOf(const Law& law, const typename Law::Branch& branch, cons
 /// m.l with its velocities in m.v and m.u. Returns false if there is no step.
 template <class Num, class P>
 bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
-  constexpr double kCompliance = 1e-7;
   auto& m = island.m;
-  const Num zero = Num::Splat(0.0), e = Num::Splat(kCompliance);
+  const Num zero = Num::Splat(0.0), e = Num::Splat(kNewtonCompliance);
   BodyMatrix<Num> matrix(island.pattern, m.blocks);
   // dl = f - g du,  f = A^-1 r,  g = A^-1 S
   for (int i = 0; i < kDofs * island.body_count; ++i) m.rhs[i] = zero;
   bool symmetric = true;
   island.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
-    const bool even = StepOf(law, branch, m.u + row, m.l + row, e, m.g + cell, m.f + row);
+    const bool even = Any(StepOf(law, branch, m.u + row, m.l + row, e, m.g + cell, m.f + row));
     symmetric = symmetric && even;
     island.AddForce(law, m.f + row, m.rhs);
   });

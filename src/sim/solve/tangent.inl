@@ -35,8 +35,8 @@ class IslandTangent {
     bool symmetric = true;
     island_.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
       branch = law.BranchOf(m_.u + row, m_.l + row);
-      const bool even = StepOf(law, branch, m_.u + row, m_.l + row, Num::Splat(compliance),
-                               m_.g + cell, m_.f + row);
+      const bool even = Any(StepOf(law, branch, m_.u + row, m_.l + row, Num::Splat(compliance),
+                                   m_.g + cell, m_.f + row));
       symmetric = symmetric && even;
     });
     matrix_.Start(island_.bodies, symmetric);

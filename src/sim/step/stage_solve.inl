@@ -17,6 +17,7 @@
 #include "sim/solve/lane_solve.inl"
 #include "sim/solve/packed_contacts.inl"
 #include "sim/solve/world_dual.inl"
+#include "sim/solve/world_primal.inl"
 #include "sim/step/touches.inl"
 
 namespace taut::sim {
@@ -103,13 +104,15 @@ void FinishWorldBiases(const View& m, const Rows<W>& s, Scratch<W>& work, M tied
   }
 }
 
-/// Marks bodies for the lane-by-lane solver: bodies with joints or contacts with moving bodies, and
-/// all bodies of a world with stiff cables that is not solved in lanes (`alone`).
+/// Marks bodies for the lane-by-lane solver: bodies with contacts with moving bodies, bodies with
+/// joints, and all bodies of a world with stiff cables, except in lanes in which the joints or
+/// cables are solved in lanes (`jointed`, `alone`: lanes in which they are not).
 template <class W, class M>
-void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
-  const W mark = Select(alone, W::Splat(1.0), W::Splat(0.0));
+void MarkUnsolved(const View& m, Scratch<W>& work, M alone, M jointed) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  const W mark = Select(alone, one, zero), joint_mark = Select(alone | jointed, one, zero);
   for (int b = 0; b < m.body_count; ++b) work.unsolved[b] = mark;
-  for (int k = 0; k < m.joint_body_count; ++k) work.unsolved[m.joint_bodies[k]] = W::Splat(1.0);
+  for (int k = 0; k < m.joint_body_count; ++k) work.unsolved[m.joint_bodies[k]] = joint_mark;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     for (int i = 0; i < work.touch_count[lane]; ++i) {
       const TouchingPair& pair = work.touches[lane * m.pair_capacity + i];
@@ -235,11 +238,21 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
     LeaveWorldSlowly(m, work, step_s);
   }
   dual = dual & !by_lane;
-  MarkUnsolved(m, work, cabled & !dual);
+  auto primal = MaskOf<W>::Splat(false);
+  if (m.world_pattern->count > 0) primal = busy & (touches == zero) & !by_lane;
+  MarkUnsolved(m, work, cabled & !dual & !primal, !primal);
   const auto tied = m.joint_count > 0 ? busy : cabled;
   FitWorldBiases(m, work, tied);
   FinishWorldBiases(m, s, work, tied & !by_lane, step_s);
-  SolveBodies(m, work, target, busy & !cabled, result);
+  SolveBodies(m, work, target, busy & !cabled & !primal, result);
+  if (Any(primal)) {
+    const auto failed = WorldPrimal<W>(m, s, work)
+                            .Solve(target, settings.max_linear_solves, primal, result.residual,
+                                   result.linear_solves);
+    for (int b = 0; b < m.body_count; ++b) {
+      work.unsolved[b] = Select(failed, W::Splat(1.0), work.unsolved[b]);
+    }
+  }
   if (Any(dual)) {
     const auto solve = [&](auto contacts) {
       return WorldDual<W, decltype(contacts)>(m, s, work, contacts)
