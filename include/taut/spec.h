@@ -266,7 +266,7 @@ struct LoadCellSpec {
 
 /// Encoder of a motor, which measures the rest length in counts.
 struct EncoderSpec {
-  double quantum_m = 0.0;  ///< Rest length per count; 0: exact.
+  double quantum_m = 0.0;  ///< Change of the rest length per count; 0: no quantization.
   double delay_s = 0.0;    ///< A whole number of sensor periods.
   // Standard deviations over the cables, drawn once per run.
   double zero_error_m = 0.0;  ///< Error of the initial rest length.

@@ -8,17 +8,17 @@ namespace taut::description {
 
 template <class Io>
 void Keys(Io& io, Like<BoardLoadCell> auto& c) {
-  io.Map(
-      "", "boards.load_cell",
-      "Load cell of each board: force = n_per_count * (code - counts_at_zero). Codes are whole "
-      "numbers from 0 to 1023. The defaults are the values of Tetraspine3 (eq. 7 of Mirletz et al. "
-      "2015).");
+  io.Map("", "boards.load_cell",
+         "Load cell of each board: force = n_per_count * (code - counts_at_zero). Converter codes "
+         "are whole numbers from 0 to 1023. The defaults are the values of Tetraspine3 (eq. 7 of "
+         "Mirletz et al. "
+         "2015).");
   io("n_per_count", c.n_per_count, Bound{.least = 0.001, .most = 10}, kFixed,
      "Force per count [N].");
   io("counts_at_zero", c.counts_at_zero, Bound{.least = 0, .most = 1023}, kFixed,
-     "Code without a force.");
+     "Converter code without load.");
   io("saturation_counts", c.saturation_counts, Bound{.least = 1, .most = 1023}, kFixed,
-     "Code at which the amplifier saturates.");
+     "Converter code at which the amplifier saturates.");
   io("noise_counts", c.noise_counts, Bound{.least = 0, .most = 1000}, kFixed,
      "Standard deviation of the noise of each conversion, in counts, before rounding.");
 }

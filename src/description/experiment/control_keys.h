@@ -63,17 +63,18 @@ void Keys(Io& io, Like<PidGains> auto& p) {
 }
 template <class Io, Either<ImpedanceSpec, ImpedanceText> Impedance>
 void Keys(Io& io, Impedance& i) {
-  io.Map("impedance", "controller.impedance",
-         "Impedance control of each cable (eq. 3 of Mirletz et al. 2015), lengthening is positive. "
-         "The tension set "
-         "point T = T0 + K (L - L0) + B (V - V0), never negative, becomes a command to the cable's "
-         "motor. Every cable with a set point needs gains, and vice versa.");
+  io.Map(
+      "impedance", "controller.impedance",
+      "Impedance control of each cable (eq. 3 of Mirletz et al. 2015), with lengthening positive. "
+      "The tension set "
+      "point T = T0 + K (L - L0) + B (V - V0), never negative, becomes a command to the cable's "
+      "motor. Every cable with a set point needs gains, and vice versa.");
   io.Rule(R"("if": {"properties": {"conversion": {"const": "pid"}}, "required": ["conversion"]}, )"
           R"("then": {"required": ["pid"]}, "else": {"not": {"required": ["pid"]}})");
   io("conversion", i.conversion, kConversions,
      "Conversion of the tension set point to a rest length. `stiffness`: rest length - (set point "
      "- tension) / k with the cable's stiffness k, as in NTRT's tension controller. `pid`: a PID "
-     "on the tension error commands the rate of the rest length, as the robot's boards do.");
+     "on the tension error commands the rate of the rest length, as on the robot's boards.");
   if constexpr (Io::kResolved) {
     io("pid", i.pid);
     io("differenced_rate", i.differenced_rate);
@@ -82,7 +83,8 @@ void Keys(Io& io, Impedance& i) {
   } else {
     io("pid", i.pid_text);
     io("rate", i.rate, kRateSources,
-       "Source of V. `exact`: the cable's rate. `differenced`: change of length since the last "
+       "Source of the cable's rate V. `exact`: the true rate. `differenced`: change of length "
+       "since the last "
        "tick, divided by the period, as the boards compute it; 0 at the first tick. "
        "`differenced_from_rest_length`: as `differenced`, but the first difference starts from the "
        "rest length, as in NTRT.");
@@ -144,7 +146,7 @@ void GaitInputKeys(Io& io, Input& v, const char* example = nullptr) {
     io("gait", v.gait_file, kNeeded, "Gait file, relative to this file's folder.",
        Example{example});
     io("changes", v.change_texts,
-       "Later gaits and their times. They must drive the same cables and the same quantity as "
+       "Later gaits and their times. All gaits must drive the same cables and the same quantity as "
        "`gait`.");
     io("more_gaits", v.more_gaits,
        "Additional gait files, for selection at run time by a controller of your program.");
@@ -163,8 +165,9 @@ void Keys(Io& io, Like<GaitInputSpec> auto& v) {
 template <class Io>
 void Keys(Io& io, Like<VelocityInputText> auto& v) {
   io.Map("velocity_input", "controller.velocity_input",
-         "Gait added to V0 of `impedance`, with a separate clock: slow oscillators above a fast "
-         "control law. Only with `impedance`, which must drive all cables of the gait.",
+         "Gait that is added to V0 of `impedance`, with a separate clock, so that slow oscillators "
+         "can drive a fast control law. Only with `impedance`, which must drive all cables of the "
+         "gait.",
          R"({"gait": "../gaits/cpg_learned.yaml", "period_s": 0.01})");
   GaitInputKeys(io, v, R"("../gaits/cpg_learned.yaml")");
 }

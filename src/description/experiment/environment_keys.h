@@ -45,9 +45,8 @@ void Keys(Io& io, Action& a) {
   } else {
     io("each", a.each,
        "Parameters of controllers and gaits, named as in a study's `vary`; `*` stands for any "
-       "text: "
-       "set points and gains of impedance control, frequencies, amplitudes and phases of a gait. "
-       "Each matching parameter has one component of the action.",
+       "text. They are set points and gains of impedance control, and frequencies, amplitudes and "
+       "phases of a gait. The action has one component per matching parameter.",
        Example{R"("hold.*.tension_offset_n")"});
     io("all", a.all,
        "As `each`, but with one common component of the action for all matching parameters.",
@@ -59,7 +58,7 @@ void Keys(Io& io, Action& a) {
      "changes, the phase stays "
      "continuous.");
   io("name", a.name, kName, kLater,
-     "Name of an action on `all`. Default: the name of the first matching parameter.");
+     "Name of an action that uses `all`. Default: the name of the first matching parameter.");
 }
 void Check(const MapReader& map, EnvironmentActionText& action);
 
@@ -88,8 +87,8 @@ void Keys(Io& io, Like<EnvironmentVariation> auto& v) {
   io.Map("", "environment.randomise",
          "Domain randomization: differences between episodes, drawn from the seed of each episode. "
          "Parts "
-         "of the experiment that depend on the seed (`start_noise`, the errors of `sensors`) "
-         "differ, too.");
+         "of the experiment that depend on the seed (`start_noise`, the errors of `sensors`) also "
+         "differ between episodes.");
   VariationKeys(io, v);
   io("slope_rad", v.slope_rad,
      Bound{.least = 0.0,
@@ -128,8 +127,7 @@ void Keys(Io& io, Environment& e) {
     io("actions", e.action_texts, kNeeded, "List of the components of the action vector.");
     io("observations", e.observation_texts, kNeeded,
        "Observations: names of trace channels (docs/formats/trace.md), where `*` stands for any "
-       "text. They are in the "
-       "order of a trace.",
+       "text. The observation vector has the order of the channels in a trace.",
        Example{R"(["body/*/position_z_m", "cable/*/tension_n"])"});
   }
   io("reward", e.reward);

@@ -53,7 +53,7 @@ void Keys(Io& io, Plane& p) {
        "Angle between the surface and the horizontal.");
     io("slope_direction", p.slope_direction, kDirection, "Horizontal direction of the ascent.");
   }
-  io("point_m", p.point_m, "Point of the surface, with `normal` or `slope_rad`.");
+  io("point_m", p.point_m, "Point on the surface, for use with `normal` or `slope_rad`.");
   if constexpr (Io::kResolved) {
     io("material", p.material);
   } else {
@@ -98,12 +98,13 @@ void Check(const MapReader& map, TerrainText& terrain);
 
 template <class Io>
 void Keys(Io& io, Like<PlaceText> auto& p) {
-  io.Map("place", "place",
-         "Initial pose and velocity of the whole robot, including anchors: it is first rotated "
-         "about the model's origin by "
-         "`rotate`, then translated by `at_m`. The velocities are added to the "
-         "model's velocities; they are not allowed with `start: settled` or `settled_floating`.",
-         R"({"at_m": [0, 0, 1], "rotate": {"axis": "y", "angle_rad": "pi / 6"}})");
+  io.Map(
+      "place", "place",
+      "Initial pose and velocity of the whole robot, including anchors: the robot is first rotated "
+      "about the model's origin by "
+      "`rotate`, then translated by `at_m`. The velocities are added to the "
+      "model's velocities; they are not allowed with `start: settled` or `settled_floating`.",
+      R"({"at_m": [0, 0, 1], "rotate": {"axis": "y", "angle_rad": "pi / 6"}})");
   io("at_m", p.at_m, "Position of the model's origin.");
   io("rotate", p.rotate, "Rotation about the model's origin.");
   io("velocity_m_per_s", p.velocity_m_per_s,
@@ -127,7 +128,7 @@ void Keys(Io& io, Push& p) {
     io("node", p.node_name, kNeeded, "Node on which the force acts, such as segment_0.tip.");
   }
   io("direction", p.direction, kNeeded, kDirection, "Direction in the world frame.");
-  io("scale", p.scale, "Factor on all of `force_n`.");
+  io("scale", p.scale, "Factor on all forces in `force_n`.");
   io("force_n", p.force_n, kNeeded, "Points [[time_s, force_n], ...], linearly interpolated.");
 }
 void Check(const MapReader& map, PushText& push);
@@ -220,7 +221,8 @@ void Keys(Io& io, Like<StartNoise> auto& n) {
      "directions.");
   io("any_pose", n.any_pose, kLater,
      "Random orientation about the robot's center of mass, uniform over all orientations. Place "
-     "the robot high enough that it does not touch the ground in any orientation; it then falls.");
+     "the robot high enough that it does not touch the ground in any orientation; the robot then "
+     "falls.");
 }
 
 template <class Io, Either<GoalSpec, GoalText> Goal>
@@ -234,7 +236,7 @@ void Keys(Io& io, Goal& g) {
   if constexpr (Io::kResolved) {
     io("body", g.body);
   } else {
-    io("body", g.body_name, kNeeded, "Tracked body, whose center of mass is to approach the goal.");
+    io("body", g.body_name, kNeeded, "Tracked body; its center of mass is to approach the goal.");
   }
   io("ahead", g.ahead, kDirection, kInherited,
      "Forward direction of the tracked body at the start, in the world frame, after `place`; it "
@@ -243,7 +245,7 @@ void Keys(Io& io, Goal& g) {
      "Frame of the sensed unit vector toward the goal. `body`: x along the horizontal part of "
      "`ahead`, y to its left, as a camera sees a beacon. `world`: x and y of the world, as with a "
      "compass.");
-  io("period_s", g.period_s, Bound::kPositive, "Time between two readings.");
+  io("period_s", g.period_s, Bound::kPositive, "Time between two readings of the goal sensor.");
 }
 
 template <class Io>
@@ -253,11 +255,13 @@ void Keys(Io& io, Like<ReferenceSpec::Value> auto& v) {
 }
 template <class Io, Either<ReferenceSpec, ReferenceText> Reference>
 void Keys(Io& io, Reference& r) {
-  io.Map("reference", "reference", "Values of one quantity of some cables from one source.",
+  io.Map("reference", "reference",
+         "Reference values of one quantity for some cables, from one source.",
          R"({"source": "the robot", "cables_n": {"inner_top_1": 34.4}})");
   io("source", r.source, kNeeded, "Source of the values.");
   io("quantity", r.quantity, kReferenceQuantities,
-     "`tension`: spring and damper, as a load cell measures. `elastic`: k (l - L) alone.");
+     "`tension`: force of spring and damper together, as measured by a load cell. `elastic`: "
+     "spring force k (l - L) alone.");
   io("statistic", r.statistic, kReferenceStatistics, "Statistic of the quantity over the phase.");
   if constexpr (Io::kResolved) {
     io("phase", r.phase);
@@ -278,8 +282,8 @@ void Keys(Io& io, Record& r) {
     io("channels", r.channels);
   } else {
     io("channels", r.channel_texts,
-       "Names of the recorded channels; `*` stands for any text. Each must match a channel of the "
-       "run. "
+       "Names of the recorded channels; `*` stands for any text. Each name must match a channel of "
+       "the run. "
        "Default: all except `node/*`, `strut/*` and `anchor/*`, which are recorded on request only "
        "(docs/formats/trace.md).",
        Example{R"(["cable/*/tension_n", "strut/*", "system/*"])"});
@@ -297,7 +301,7 @@ void Keys(Io& io, Experiment& e) {
          "An experiment file defines the initial state, terrain, controllers, events and recorded "
          "channels of a robot.");
   HeadKeys(io, e,
-           {"Name of the experiment in reports and traces. Required unless `base` has it.",
+           {"Name of the experiment in reports and traces. Required unless the `base` file has it.",
             "Purpose of the experiment, in a sentence or two.",
             "Another experiment file to inherit from, relative to this file's folder. Each key of "
             "this file replaces the whole key of the base, except that `parameters` and `set` are "
@@ -308,14 +312,16 @@ void Keys(Io& io, Experiment& e) {
             R"({"push_n": "2.3 * 9.81"})"});
   if constexpr (!Io::kResolved) {
     io("model", e.model, kNeeded,
-       "Model file of the robot, relative to this file's folder. Required unless `base` has it.",
+       "Model file of the robot, relative to this file's folder. Required unless the `base` file "
+       "has it.",
        Example{R"("../models/tetraspine3.yaml")"});
     io("set", e.set,
        "Model parameters that this experiment overrides. Values may be expressions over the "
        "experiment's parameters; `--set` on the command line takes precedence.",
        Example{R"({"segments": 12, "friction": "ground_friction / 2"})"});
     io("model_options", e.model_options);
-    io("gravity_m_per_s2", e.gravity_m_per_s2, "Gravity in the world frame. Default: the model's.");
+    io("gravity_m_per_s2", e.gravity_m_per_s2,
+       "Gravity in the world frame. Default: the model's gravity.");
     io("terrain", e.terrain, "Terrain elements. Default: none; the robot floats or falls.");
     io("place", e.place);
     io("motion", e.motions,
@@ -327,7 +333,8 @@ void Keys(Io& io, Experiment& e) {
      "of events.");
   io("duration_s", e.duration_s, kNeeded,
      Bound{.least = 0, .most = kLongestTime_s, .most_text = "1e9"},
-     "Simulated time; with 0 the trace contains only the start. Required unless `base` has it.",
+     "Simulated time; with 0 the trace contains only the start. Required unless the `base` file "
+     "has it.",
      Example{"60"});
   io("start", e.start, kStarts,
      "State at t = 0. `as_described`: the described pose, with nodes at the model's positions. "
@@ -354,7 +361,8 @@ void Keys(Io& io, Experiment& e) {
        "this file's "
        "folder.");
     io("reference", e.reference_texts,
-       "Values of a robot or another simulator, for comparison in the summary and the report.");
+       "Cable forces of a robot or another simulator, for comparison in the summary and the "
+       "report.");
     io("timeline", e.timeline);
     io("scale", e.scale_texts,
        "Factors on model quantities, for sensitivity studies. Factors on the same quantity "

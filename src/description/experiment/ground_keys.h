@@ -49,8 +49,8 @@ template <class Io, Either<HeightFieldDef, HeightFieldText> Field>
 void Keys(Io& io, Field& f) {
   io.Map(
       "height_field", "terrain.height_field",
-      "Height field above a rectangle, solid below: heights at the corners of square cells of two "
-      "triangles each. There is no ground outside the rectangle.",
+      "Height field over a rectangle, solid below: heights at the corners of square cells, each "
+      "split into two triangles. There is no ground outside the rectangle.",
       R"json({"columns": 240, "rows": 240, "cell_m": 0.04, "height_m": "0.02 * sin(i) * cos(j)"})json");
   io("name", f.name, kResolvedOnly);
   if constexpr (Io::kResolved) {
@@ -59,12 +59,13 @@ void Keys(Io& io, Field& f) {
   } else {
     io.OneOf({"file", "height_m"});
     io("file", f.file,
-       "Heights, relative to the experiment's folder. CSV: heights in m, one line per row of "
+       "File with the heights, relative to the experiment's folder. CSV: heights in m, one line "
+       "per row of "
        "corners, beginning with the "
        "smallest y, with x increasing along the line; lines that begin with # are skipped. PNG: "
        "gray, preferably 16 bits, with `height_range_m`; x increases to the right and y upward. "
        "HDF5: `hills.h5:/z` is the data set z of hills.h5, in m, with rows as in CSV.");
-    io("height_range_m", f.height_range_m, "Heights of black and white in an image.");
+    io("height_range_m", f.height_range_m, "Heights of black and of white pixels in a PNG file.");
     io("columns", f.columns, kCorners, kInherited,
        "Number of corners along x. Only with `height_m`.");
     io("rows", f.rows, kCorners, kInherited, "Number of corners along y. Only with `height_m`.");
@@ -75,9 +76,10 @@ void Keys(Io& io, Field& f) {
     io("height_m", f.height_m);
   } else {
     io("height_m", f.formula,
-       "Formula of the heights over `x_m` and `y_m` from the center, or over `i` and `j` from 0 at "
-       "the corner with the smallest x and y. `noise(seed, x, y)` is smooth, between -1 and 1, "
-       "with a separate random value at each pair of whole x and y.");
+       "Formula for the height. Its variables are `x_m` and `y_m`, measured from the center, or "
+       "`i` and `j`, the indices of a corner along x and y, from 0 at the smallest x and y. "
+       "`noise(seed, x, y)` is a smooth random function between -1 and 1, with an independent "
+       "value at each pair of integers x and y.");
   }
   io("split", f.split, kSplits,
      "Diagonal that splits a cell. `alternating`: the direction changes from cell to cell. `same`: "
@@ -94,7 +96,8 @@ void Check(const MapReader& map, HeightFieldText& field);
 
 template <class Io>
 void Keys(Io& io, Like<MeshPlaceText> auto& p) {
-  io.Map("place", "terrain.mesh.place", "Placement of a mesh: rotated by `rotate`, then moved.");
+  io.Map("place", "terrain.mesh.place",
+         "Placement of a mesh, which is rotated by `rotate`, then translated by `at_m`.");
   io("at_m", p.at_m, "Position of the file's origin.");
   io("rotate", p.rotate, "Rotation about the file's origin.");
 }
@@ -114,7 +117,8 @@ void Keys(Io& io, Mesh& m) {
        "Wavefront OBJ or STL file, text or binary, relative to the experiment's folder. Corners "
        "are counter-clockwise seen from outside.");
     io("scale_m", m.scale_m, kNeeded, Bound::kPositive,
-       "Length of 1 in the file: 0.001 for mm. Neither format has a unit.");
+       "Length of one unit of the file: 0.001 for mm. OBJ and STL files do not contain their "
+       "unit.");
     io("place", m.place);
   }
   io("solid", m.solid, kMeshKinds,

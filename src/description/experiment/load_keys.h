@@ -15,7 +15,8 @@ void Keys(Io& io, Force& f) {
   } else {
     io.OneOf({"node", "nodes"});
     io("node", f.node_name, "Node on which the force acts, such as segment_0.tip.");
-    io("nodes", f.nodes, "Selector of nodes by names and tags; the force acts on each.");
+    io("nodes", f.nodes,
+       "Selector of nodes by names and tags; the force acts on each of these nodes.");
   }
   io("force_n", f.force_n, kNeeded, "Force in the world frame.");
 }
@@ -28,9 +29,9 @@ void Keys(Io& io, Like<LineLoadText> auto& l) {
       "of its end nodes.",
       R"({"members": "deck", "force_n_per_m": [0, 0, -200]})");
   io("members", l.members, kNeeded,
-     "Selector of cables and bars, as for controllers, and of rods, by their names.");
+     "Selector of cables and bars by names and tags, as for controllers, or of rods by name.");
   io("force_n_per_m", l.force_n_per_m, kNeeded,
-     "Force per described length of the member, in the world frame.");
+     "Force per length of the member in the described pose, in the world frame.");
 }
 
 template <class Io, Either<LoadCaseSpec::Settlement, SettlementText> Settlement>
@@ -73,8 +74,8 @@ void Keys(Io& io, Like<RestLengthText> auto& r) {
 template <class Io>
 void Keys(Io& io, Like<TemperatureText> auto& t) {
   io.Map("temperatures", "load_case.temperature",
-         "Change of temperature of cables and bars. Their rest lengths increase by the rest length "
-         "times `expansion_per_k` times the change.",
+         "Change of temperature of cables and bars. The rest length of each member increases by "
+         "the product of rest length, `expansion_per_k` and temperature change.",
          R"({"members": "strut", "by_k": 30})");
   io("members", t.members, kNeeded, kMembersMeaning);
   io("by_k", t.by_k, kNeeded, Bound::kAny, "Change of temperature [K]; negative cools.");
@@ -91,12 +92,13 @@ inline void Check(const MapReader& map, LoadCaseText& c) {
 template <class Io, Either<LoadCaseSpec, LoadCaseText> LoadCase>
 void Keys(Io& io, LoadCase& c) {
   io.Map("load_case", "load_case",
-         "Static loads for `taut analyze`, ignored by a run. If several entries change the length "
+         "Static loads for `taut analyze`; `taut run` ignores them. If several entries change the "
+         "length "
          "of the same member, the changes add up.",
          R"({"name": "wind", "forces": [{"node": "top", "force_n": [50, 0, 0]}]})");
   io("name", c.name, kNeeded, kName, "Name of the load case.");
   io("weight", c.weight, "Whether gravity acts.");
-  io("weight_factor", c.weight_factor, LaterThan{1.0}, "Factor on gravity, if it acts.");
+  io("weight_factor", c.weight_factor, LaterThan{1.0}, "Factor on gravity if `weight` is `true`.");
   io("forces", c.forces, "Forces on nodes.");
   io("settlements", c.settlements, "Settlements of the ground under supports.");
   if constexpr (Io::kResolved) {
@@ -108,7 +110,7 @@ void Keys(Io& io, LoadCase& c) {
     io("line_loads", c.lines, "Loads per length of members.");
   }
   io("max_displacement_m", c.max_displacement_m, kLater, Bound::kPositive,
-     "Limit of the displacement of any node from its described place.");
+     "Largest allowed displacement of any node from its position in the described pose.");
 }
 
 template <class Io>
@@ -120,7 +122,7 @@ void Keys(Io& io, Like<LoadCombinationText> auto& c) {
   io("name", c.name, kNeeded, kName, "Name, different from those of all load cases.");
   io("factors", c.factors, kNeeded, "Factor by name of a load case.");
   io("max_displacement_m", c.max_displacement_m, Bound::kPositive,
-     "Limit of the displacement of any node from its described place.");
+     "Largest allowed displacement of any node from its position in the described pose.");
 }
 
 }  // namespace taut::description

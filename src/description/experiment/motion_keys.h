@@ -26,7 +26,7 @@ struct MotionText {
 template <class Io, class Law>
 void TimeLawKeys(Io& io, Law& law, const char* speed, const char* amplitude) {
   io(speed, law.speed,
-     "Speed over time, points [[time_s, speed], ...], linearly interpolated; the first and last "
+     "Speed over time as points [[time_s, speed], ...], linearly interpolated; the first and last "
      "speed are held. One point is a constant speed.");
   io(amplitude, law.amplitude,
      "Amplitude of a sine that is added to the displacement or angle: amplitude (sin(2 pi "
@@ -64,7 +64,7 @@ void Keys(Io& io, Like<SlideText> auto& s) {
 }
 template <class Io>
 void Keys(Io& io, Like<TurnText> auto& t) {
-  io.Map("turn", "motion.turn", "Rotation about an axis, which moves with the `slide`.",
+  io.Map("turn", "motion.turn", "Rotation about an axis; the axis moves with the `slide`.",
          R"({"axis": [0, 0, 1], "speed_rad_per_s": [[0, 2]]})");
   io("axis", t.axis, kNeeded, kDirection, "Direction of the axis in the world frame.");
   io("center_m", t.center_m, "Point of the axis at t = 0, in the world frame.");

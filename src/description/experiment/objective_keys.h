@@ -57,11 +57,12 @@ template <class Io>
 void VariationKeys(Io& io, auto& w) {
   io("friction", w.friction, kShare,
      "Largest relative change of friction: 0.2 means factors from 0.8 to 1.2.");
-  io("mass", w.mass, kShare, "Largest relative change of the masses, by one common factor.");
+  io("mass", w.mass, kShare,
+     "Largest relative change of the masses; one common factor applies to all.");
   io("stiffness", w.stiffness, kShare,
-     "Largest relative change of the cable stiffnesses, by one common factor.");
+     "Largest relative change of the cable stiffnesses; one common factor applies to all.");
   io("damping", w.damping, kShare,
-     "Largest relative change of the cable dampings, by one common factor.");
+     "Largest relative change of the cable dampings; one common factor applies to all.");
   io("start", w.start);
 }
 

@@ -32,7 +32,7 @@ void Keys(Io& io, Cell& c) {
       "Load cell: measured tension with bias, noise, range, quantization or counts, and delay. A "
       "load cell "
       "measures spring and damper together, so controllers that use the elastic part receive the "
-      "sum of both.");
+      "sum of both forces.");
   io("noise_n", c.noise_n, Bound::kNonNegative, "Standard deviation of the noise of each sample.");
   io("bias_n", c.bias_n, Bound::kNonNegative,
      "Standard deviation of each cell's constant error, drawn once per run.");
@@ -60,7 +60,8 @@ void Check(const MapReader& map, LoadCellText& cell);
 template <class Io, Either<EncoderSpec, EncoderText> Encoder>
 void Keys(Io& io, Encoder& e) {
   io.Map("", "encoder", "Rest lengths measured in counts of the motor's encoder.");
-  io("quantum_m", e.quantum_m, Bound::kNonNegative, "Rest length per count; 0: exact.");
+  io("quantum_m", e.quantum_m, Bound::kNonNegative,
+     "Change of the rest length per count; 0: no quantization.");
   if constexpr (!Io::kResolved) {
     io("counts_per_turn", e.counts_per_turn, Bound::kPositive,
        "Counts per turn of the spool, instead of `quantum_m`. Requires `spool_radius_m`.");

@@ -43,11 +43,10 @@ void Keys(Io& io, Like<ScatterText> auto& s) {
          R"("box_m": [0.05, 0.05, 0.05]})");
   io("count", s.count, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "Number of blocks.");
   io("seed", s.seed, Bound{.least = 0, .most = 2'147'483'647},
-     "Seed of the positions. Block i has x, y, z and heading, uniformly distributed and drawn in "
-     "this order, from Philox4x32-10 (docs/theory/sensors.md, Noise) with this seed as its key, "
-     "stream 100 "
-     "and index i. Positions are the same on all machines; with a larger `count`, the first blocks "
-     "stay at the same positions.");
+     "Seed of the positions. The x, y, z and heading of block i are uniformly distributed and "
+     "drawn in this order from the generator Philox4x32-10 (docs/theory/sensors.md, Noise) with "
+     "this seed as its key, stream 100 and index i. Positions are the same on all machines; if you "
+     "increase `count`, the first blocks keep their positions.");
   io("within_m", s.within, kNeeded,
      "Two corners of the box that contains the blocks' centers, the corner with the smaller "
      "coordinates first. A "
@@ -62,8 +61,8 @@ void Check(const MapReader& map, ScatterText& scatter);
 template <class Io>
 void Keys(Io& io, Like<StairsText> auto& s) {
   io.Map("stairs", "terrain.stairs",
-         "Fixed stairs that rise along x: adjacent boxes, one per step, from the foot's height to "
-         "the tread. The lowest is named NAME_0, the next NAME_1.",
+         "Fixed stairs that rise along x: adjacent boxes, one per step, each from the foot's "
+         "height up to its tread. The lowest box is named NAME_0, the next NAME_1.",
          R"({"steps": 10, "width_m": 0.2, "tread_m": 0.05, "rise_m": 0.01, "at_m": [0.5, 0, 0]})");
   io("steps", s.steps, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "Number of steps.");
   io("width_m", s.width_m, kNeeded, Bound::kPositive, "Width.");

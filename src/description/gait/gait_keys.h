@@ -28,7 +28,7 @@ void Keys(Io& io, Gait& g) {
       "length added to the rest length. Experiments use a gait as a controller's "
       "`velocity_input` or `rest_length_input`. Equations: docs/theory/gaits.md.");
   HeadKeys(io, g,
-           {"Name of the gait. Required unless `base` has it.",
+           {"Name of the gait. Required unless the `base` file has it.",
             "Purpose and origin of the gait, in a sentence or two.",
             "Another gait file to inherit from, relative to this file's folder. Each key of this "
             "file replaces the whole key of the base, except that `parameters` are merged by name.",

@@ -11,8 +11,8 @@ namespace taut::description {
 template <class Io, Either<ActuatorDef, ActuatorText> Actuator>
 void Keys(Io& io, Actuator& a) {
   io.Map("", "builder.cable.actuator",
-         "Actuator of the rest length: an actuator with at least one limit, `ideal: true` without "
-         "limits, or a `dc_motor`. Without "
+         "Actuator that changes the rest length: one with at least one limit, `ideal: true` "
+         "(without limits), or a `dc_motor`. Without "
          "an actuator the rest length is fixed.");
   io("kind", a.kind, kActuatorKinds, kResolvedOnly);
   if constexpr (!Io::kResolved) {

@@ -31,7 +31,7 @@ void Keys(Io& io, Like<RotationText> auto& r) {
          "in order, all about the fixed axes of the world.",
          R"({"axis": "z", "angle_rad": "pi / 2"})");
   io.Rule(R"("oneOf": [{"required": ["axis", "angle_rad"]}, {"required": ["quaternion"]}])");
-  io("axis", r.axis, "Axis in the world frame, right-handed, of any length but zero.");
+  io("axis", r.axis, "Rotation axis in the world frame (right-hand rule), of any length but zero.");
   io("angle_rad", r.angle_rad, "Rotation angle.");
   io("quaternion", r.quaternion, "Quaternion of any length but zero.");
 }

@@ -28,8 +28,8 @@ void Keys(Io& io, Joint& j) {
       "for a node: a is the world. One coordinate measures the free motion. `hinge`: its angle. "
       "`prismatic`, `cylindrical` and "
       "`line`: the displacement of b's node along the axis. `distance`: its "
-      "length. `ball`: the angle between the axis in b and the axis in a. Friction, "
-      "spring and damper of a ball act about every axis alike.",
+      "length. `ball`: the angle between the axis in b and the axis in a. Friction, spring and "
+      "damper of a ball joint are equal about all axes.",
       R"({"kind": "hinge", "axis": [0, 1, 0], "least_rad": -0.5, "most_rad": 1.2})");
   io("name", j.name, kResolvedOnly);
   io("body_a", j.body_a, kResolvedOnly);
@@ -39,13 +39,13 @@ void Keys(Io& io, Joint& j) {
   io("turned", j.turned,
      "Rotation of b relative to a in the described pose, from the pose with joint angle 0, about "
      "axes in the frame of `axis`. Default: angles are 0 in the described pose. taut writes this "
-     "key into model files of another pose, as by `taut run --final_pose`.");
+     "key when it writes a model in another pose, such as with `taut run --final_pose`.");
   io("kind", j.kind, kJointKinds, kNeeded,
      "Free motion. `ball`: all rotations. `hinge`: rotation about the axis. `weld`: none. "
      "`prismatic`: translation along the axis. `cylindrical`: rotation about the axis and "
      "translation along it. `planar`: translation across the axis and rotation about it. `line`: "
      "all rotations, and b's node moves along the axis. `plane`: all rotations, and b's node moves "
-     "across the axis. `distance`: all but the distance of the nodes.");
+     "across the axis. `distance`: all motions that keep the distance of the nodes.");
   io.SpeltBy("kind", {IsAngle(j.kind) ? 0 : 1, WhoHas(j.kind)});
   io("axis", j.axis, kDirection,
      "Axis in the described pose: in the part's frame of the pair or node, or in the world frame "
@@ -58,7 +58,8 @@ void Keys(Io& io, Joint& j) {
   io("restitution", j.restitution, Bound::kFraction,
      "Coefficient of restitution at the joint limits.");
   io(Coordinate("friction_n_m", "friction_n"), j.friction, Bound::kNonNegative,
-     "Dry friction: the joint sticks up to this value and slides against it.");
+     "Dry friction: the joint sticks below this value and, while sliding, resists with this "
+     "value.");
   io(Coordinate("stiffness_n_m_per_rad", "stiffness_n_per_m"), j.stiffness, Bound::kNonNegative,
      "Stiffness of a spring. The spring of a ball rotates b back to the described pose, along the "
      "shorter rotation. "
@@ -66,7 +67,7 @@ void Keys(Io& io, Joint& j) {
   io(Coordinate("damping_n_m_s_per_rad", "damping_n_s_per_m"), j.damping, Bound::kNonNegative,
      "Damping.");
   io(Coordinate("rest_rad", "rest_m"), j.rest,
-     "Coordinate at which the spring exerts no force. A ball has no such key.");
+     "Coordinate at which the spring exerts no force. Not allowed for a ball joint.");
   io("collides", j.collides, "Whether the joint's bodies collide with each other.");
   if constexpr (Io::kResolved) MemberKeys(io, j.member, MemberOf::kBar);
 }
@@ -76,11 +77,12 @@ void Check(const MapReader& map, JointText& joint);
 template <class Io>
 void Keys(Io& io, Like<PinText> auto& p) {
   io.Map("", "builder.rod.pins",
-         "Friction, spring and damper in the ball joints at the nodes of a class-k rod, about "
-         "every axis alike.",
+         "Friction, spring and damper in the ball joints at the nodes of a class-k rod, equal "
+         "about all axes.",
          R"({"friction_n_m": 0.01})");
   io("friction_n_m", p.friction, Bound::kNonNegative,
-     "Dry friction: the joints stick up to this value and slide against it.");
+     "Dry friction: a joint sticks below this torque, and a sliding joint resists with this "
+     "torque.");
   io("stiffness_n_m_per_rad", p.stiffness, Bound::kNonNegative,
      "Stiffness of a spring that rotates the rod back to the described pose, along the shorter "
      "rotation.");

@@ -21,7 +21,7 @@ void MemberKeys(Io& io, Like<MemberDef> auto& m, MemberOf of) {
   io("young_pa", m.young_pa, kInherited, LaterThan{0.0}, Bound::kPositive, "Young's modulus E.");
   if (bends) {
     io("second_moment_m4", m.second_moment_m4, kInherited, LaterThan{0.0}, Bound::kPositive,
-       "Least second moment of area of the cross section, for Euler's buckling load. Requires "
+       "Smallest second moment of area of the cross section, for Euler's buckling load. Requires "
        "`young_pa`.");
     io("buckling_length_m", m.buckling_length_m, kInherited, LaterThan{0.0}, Bound::kPositive,
        "Effective length for Euler's buckling load, between points with lateral support. Default: "

@@ -19,7 +19,8 @@ void ContactKeys(Io& io, Like<ModelDef> auto& m) {
   io("restitution_combine", m.restitution_combine, kCombineRules,
      "Combination of the restitutions of two touching surfaces.");
   io("friction_law", m.friction_law, kFrictionLaws,
-     "Directions of friction. `cone`: both tangential directions, the exact Coulomb cone. "
+     "Directions in which friction acts. `cone`: both tangential directions, the exact Coulomb "
+     "cone. "
      "`along_slip`: only along the sliding velocity, as in Bullet by default; this law lets a "
      "robot creep "
      "sideways.");
@@ -30,7 +31,8 @@ void Keys(Io& io, Like<ModelDef> auto& m) {
   ContactKeys(io, m);
 }
 inline constexpr const char* kInertiaMeaning =
-    "Inertia of a body. `exact`: sum over its parts. `bounding_box`: for bodies of several parts, "
+    "Inertia of a body. `exact`: sum over the body's parts. `bounding_box`: for bodies of several "
+    "parts, "
     "a solid box with the body's mass and the size of its initial bounding box, as Bullet uses for "
     "compounds.";
 inline constexpr const char* kDampingMeaning =
@@ -39,8 +41,8 @@ inline constexpr const char* kDampingMeaning =
 template <class Io>
 void Keys(Io& io, Like<ModelOptions> auto& o) {
   io.Map("model_options", "model_options",
-         "Model laws that this experiment replaces, to run a model under the laws of another "
-         "simulator. Default: the model's.");
+         "Physical laws of the model that this experiment replaces, such as by the laws of another "
+         "simulator. Default: the model's laws.");
   io("inertia", o.inertia, kInertiaLaws, kInertiaMeaning);
   io("damping_law", o.damping_law, kDampingLaws, kDampingMeaning);
   ContactKeys(io, o.def);
@@ -48,13 +50,14 @@ void Keys(Io& io, Like<ModelOptions> auto& o) {
 
 template <class Io>
 void Keys(Io& io, Like<NodeText> auto& n) {
-  io.Map("", "node", "Node in full. `tip: [x, y, z]` is short for `tip: {at_m: [x, y, z]}`.");
+  io.Map("", "node",
+         "Node with tags or other keys. `tip: [x, y, z]` is short for `tip: {at_m: [x, y, z]}`.");
   io("at_m", n.at_m, kNeeded,
      "Position, in the part's frame or, outside of parts, in the world frame.");
   io("tags", n.tags, "Tags for builders and controllers, in addition to the node's name.");
   io("fixed_to", n.fixed_to, kName,
-     "Another node of the same part, to whose body this node belongs. For points of a body away "
-     "from its rods and boxes.");
+     "Another node of the same part; this node belongs to the body of that node. For points of a "
+     "body that are not on its rods and boxes.");
 }
 void Check(const MapReader& map, NodeText& node);
 /// Reads the short form `[x, y, z]`. Returns false for a map; reports an error for other types.
@@ -70,9 +73,9 @@ void Keys(Io& io, Like<RouteText> auto& r) {
   io.OneOf({"eyelet", "pulley", "drum"});
   io("eyelet", r.eyelet, "Node at which the cable slides through.");
   io("pulley", r.pulley,
-     "Node at the center of a pulley, which belongs to the node's body. The cable runs over the "
-     "pulley, or passes by where it does not touch it.");
-  io("drum", r.drum, "Node at the center of a drum, on whose rim the cable ends.");
+     "Node at the center of a pulley; the pulley belongs to the node's body. The cable wraps "
+     "around the pulley or, without contact, passes the pulley in a straight line.");
+  io("drum", r.drum, "Node at the center of a drum; the cable ends on the rim of the drum.");
   io("friction", r.friction, Bound::kNonNegative,
      "Coefficient mu of capstan friction: before the cable slips, the ratio of the tensions on "
      "both sides is "
@@ -99,12 +102,12 @@ void Keys(Io& io, Like<PairsText> auto& p) {
          "Pair of nodes that an element joins, or several such pairs with the same tags.",
          R"({"nodes": ["right", "left"], "tags": ["rod"]})");
   io("name", p.name, kName,
-     "Name of the element, such as a cable, and one of its tags. Default: the nodes' names, "
-     "right-left.");
+     "Name of the element, such as a cable; also one of the element's tags. Default: the names of "
+     "the nodes, such as right-left.");
   io.OneOf({"nodes", "each", "route"});
   io.Rule(R"("not": {"required": ["name", "each"]})");
   io("nodes", p.nodes,
-     "Nodes. A cable may have more than two: it slides through those in between.");
+     "Nodes of the pair. A cable may have more than two nodes; it slides through the inner nodes.");
   io("each", p.each, "List of pairs with the same tags, instead of `nodes`.");
   io("route", p.route,
      "Route of a cable, instead of `nodes`: ends, eyelets with friction, pulleys and drums, in "
@@ -169,7 +172,7 @@ void MassKeys(Io& io, Like<MassText> auto& m, Along along) {
   io("mass_kg_per_m", m.mass_kg_per_m, Bound::kNonNegative,
      "Mass per length of the element along its pair, instead of `mass_kg`.");
 }
-inline constexpr const char* kCollidesMeaning = "Whether it collides with other objects.";
+inline constexpr const char* kCollidesMeaning = "Whether this element collides with other objects.";
 
 template <class Io, Either<CapsuleDef, RodText> Rod>
 void Keys(Io& io, Rod& r) {
@@ -324,7 +327,7 @@ void Keys(Io& io, Like<ModelText> auto& m) {
          "repeated and connected.");
   HeadKeys(
       io, m,
-      {"Name of the robot. Required unless `base` has it.",
+      {"Name of the robot. Required unless the `base` file has it.",
        "Description of the robot, in a sentence or two.",
        "Another model file to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",
@@ -345,19 +348,19 @@ void Keys(Io& io, Like<ModelText> auto& m) {
      "have none, or several of different kinds.");
   io("apart", m.apart,
      "Lists of names of bodies, one list per group. Bodies in the same list do not collide with "
-     "each other. Neither do "
-     "bodies that a joint connects, unless it has `collides: true`.",
+     "each other. Bodies that a joint connects do not collide either, unless the joint has "
+     "`collides: true`.",
      Example{R"([["upper_leg", "foot"]])"});
   io("gravity_m_per_s2", m.def.gravity_m_per_s2, "Gravity in the world frame.");
   io("contact", m.def);
   io("inertia", m.inertia, kInertiaLaws, kInertiaMeaning);
   io("damping_law", m.damping_law, kDampingLaws, kDampingMeaning);
   io("actuator", m.actuator_text,
-     "Actuator that replaces the `actuator` of every cable whose builder has one; for files with a "
-     "`base`.");
+     "Actuator that replaces the `actuator` in all cable builders that have this key. Use it in "
+     "files with a `base`.");
   io("allow_disconnected", m.allow_disconnected,
-     "Whether bodies without a cable or joint to the others are allowed. Otherwise they are an "
-     "error.");
+     "Whether to allow bodies that no cable or joint connects to the other bodies. If `false`, "
+     "such bodies are an error.");
 }
 void Check(const MapReader& map, ModelText& model);
 

@@ -14,16 +14,16 @@ void MotorFigureKeys(Io& io, Like<DcMotorDef> auto& m) {
   io("torque_constant_n_m_per_a", m.torque_constant_n_m_per_a, Bound::kPositive,
      "Torque per current; equal to the back EMF per speed [V s/rad].");
   io("rotor_inertia_kg_m2", m.rotor_inertia_kg_m2, Bound::kPositive,
-     "Inertia of the rotor and all that turns with it.");
+     "Inertia of the rotor and of all parts that turn with it.");
   io("friction_torque_n_m", m.friction_torque_n_m, Bound::kNonNegative,
-     "Friction of a turning rotor, at any speed.");
+     "Friction torque of a turning rotor, independent of its speed.");
   io("static_friction_torque_n_m", m.static_friction_torque_n_m, Bound::kNonNegative,
      "Breakaway torque of a rotor at rest, not below `friction_torque_n_m`. Assumed.");
   io("stribeck_speed_rad_per_s", m.stribeck_speed_rad_per_s, Bound::kPositive,
      "Rotor speed at which friction has fallen halfway from its static to its kinetic value. "
      "Assumed.");
   io("viscous_friction_n_m_s_per_rad", m.viscous_friction_n_m_s_per_rad, Bound::kNonNegative,
-     "Additional friction per speed of the rotor.");
+     "Additional friction torque per speed of the rotor.");
   io("gear_ratio", m.gear_ratio, Bound::kPositive,
      "Turns of the rotor per turn of the spool. Assumed.");
   io("gear_efficiency", m.gear_efficiency, kEfficiency,
@@ -71,11 +71,11 @@ void MotorHeatKeys(Io& io, Like<DcMotorDef> auto& m) {
 
 template <class Io>
 void Keys(Io& io, Like<DcMotorDef> auto& m) {
-  io.Map(
-      "", "builder.cable.actuator.dc_motor",
-      "Direct-current motor with gear, spool and driver (docs/theory/motor.md). The defaults are a "
-      "Faulhaber 1524T012SR, `dc_motor: {}`; values that are not published are marked as assumed.",
-      R"({"gear_ratio": 43, "gear_efficiency": 0.7, "spool_radius_m": 0.003})");
+  io.Map("", "builder.cable.actuator.dc_motor",
+         "Direct-current motor with gear, spool and driver (docs/theory/motor.md). The defaults, "
+         "`dc_motor: {}`, are the values of a Faulhaber 1524T012SR; values that are not published "
+         "are marked as assumed.",
+         R"({"gear_ratio": 43, "gear_efficiency": 0.7, "spool_radius_m": 0.003})");
   MotorFigureKeys(io, m);
   MotorSupplyKeys(io, m);
   MotorHeatKeys(io, m);

@@ -16,7 +16,7 @@ void Keys(Io& io, Like<StribeckDef> auto& s) {
   io("speed_m_per_s", s.speed_m_per_s, kNeeded, Bound::kPositive,
      "Sliding speed at which the coefficient has fallen halfway from static to kinetic.");
   io("viscous_friction_s_per_m", s.viscous_friction_s_per_m, Bound::kNonNegative,
-     "Viscous increase of the coefficient per speed.");
+     "Increase of the coefficient per m/s of sliding speed.");
 }
 
 template <class Io>
@@ -52,10 +52,10 @@ struct SurfaceText {
 template <class Io>
 void SurfaceKeys(Io& io, Like<SurfaceText> auto& s) {
   io("friction", s.friction, Bound::kNonNegative,
-     "Coulomb coefficient, static and kinetic, instead of the next two keys.");
+     "Coulomb friction coefficient, both static and kinetic, instead of the next two keys.");
   io("static_friction", s.static_friction, Bound::kNonNegative,
-     "Static Coulomb coefficient, not below `kinetic_friction`.");
-  io("kinetic_friction", s.kinetic_friction, Bound::kNonNegative, "Kinetic Coulomb coefficient.");
+     "Static friction coefficient, not below `kinetic_friction`.");
+  io("kinetic_friction", s.kinetic_friction, Bound::kNonNegative, "Kinetic friction coefficient.");
   Keys(io, s.material);
 }
 /// Returns the material and reports conflicting keys. `has_axis`: whether the shape has a

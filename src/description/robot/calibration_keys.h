@@ -51,7 +51,7 @@ void Keys(Io& io, Like<CalibrationFileText> auto& s) {
          "A calibration contains measured values of a robot's load cells, encoders and springs.");
   HeadKeys(
       io, s,
-      {"Name of the calibration. Required unless `base` has it.",
+      {"Name of the calibration. Required unless the `base` file has it.",
        "Robot, person and instruments of the measurement.",
        "Another calibration to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",

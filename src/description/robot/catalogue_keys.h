@@ -69,7 +69,7 @@ void Keys(Io& io, Like<CatalogueFileText> auto& s) {
          "A catalogue lists the motors and springs from which a robot can be built.");
   HeadKeys(
       io, s,
-      {"Name of the catalogue. Required unless `base` has it.", "Source of the figures.",
+      {"Name of the catalogue. Required unless the `base` file has it.", "Source of the figures.",
        "Another catalogue to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("first_catalogue.yaml")",

@@ -79,7 +79,7 @@ void Keys(Io& io, Like<FaultFileText> auto& s) {
          "A fault script defines faults of a robot's electronics and their times.");
   HeadKeys(
       io, s,
-      {"Name of the script. Required unless `base` has it.",
+      {"Name of the script. Required unless the `base` file has it.",
        "Purpose of the script, in a sentence or two.",
        "Another fault script to inherit from, relative to this file's folder. Each key of this "
        "file replaces the whole key of the base, except that `parameters` are merged by name.",

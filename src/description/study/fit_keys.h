@@ -61,7 +61,7 @@ void Keys(Io& io, Like<FitExperimentText> auto& e) {
      "Mapping file with the taut names and units of the data (docs/formats/mapping.md).",
      Example{R"("map.json")"});
   io("setpoints", e.setpoints,
-     "Trace whose rows have the times, on the data's clock, at which the set points were "
+     "Trace with one row per set point, at the time on the data's clock at which the set point was "
      "commanded. Its optional column `experiment_s` contains the corresponding times on the "
      "experiment's clock. Default of trace and column: the times of the set points in the "
      "experiment.",
@@ -199,7 +199,8 @@ void Keys(Io& io, Like<FitResidualText> auto& r) {
      "Standard deviation of the difference between computed and measured value, from errors of "
      "both, in the channel's unit.");
   io("relative_sd", r.relative_sd, Bound::kNonNegative,
-     "Standard deviation relative to the measured value. The larger one of this and `sd` is used.");
+     "Standard deviation relative to the measured value. The larger of this deviation and `sd` is "
+     "used.");
   io("window", r.window, "Time window. Default: all time that experiment and data share.");
   io("statistic", r.statistic, kFitStatistics,
      "Compared statistic of a window, at the times of its data. `mean`: mean over time. `rows`: "
@@ -244,8 +245,9 @@ struct FitCandidateText {
 };
 template <class Io>
 void Keys(Io& io, Like<FitCandidateText> auto& d) {
-  io.Map("design", "design",
-         "Candidate measurement, whose information `taut fit --design` computes.");
+  io.Map(
+      "design", "design",
+      "Candidate measurement; `taut fit --design` computes its information about the parameters.");
   io("name", d.name, kNeeded, kName, "Name in the table.");
   io("residuals", d.residuals, kNeeded,
      "Residuals that the measurement would have. No data is needed.");
@@ -263,8 +265,7 @@ template <class Io>
 void Keys(Io& io, Like<FitCarriedText> auto& c) {
   io.Map("carried", "carried",
          "Check of the data without the model: whether the measured forces balance the applied "
-         "load. For bodies that are held only by "
-         "cables and bars whose forces are compared.",
+         "load. Only for bodies that are held by nothing but cables and bars with compared forces.",
          R"({"name": "top", "bodies": ["n3", "n4", "n5"], "direction": [0, 0, -1]})");
   io("name", c.name, kNeeded, kName, "Name in the table.");
   io("bodies", c.bodies, kNeeded,
@@ -301,7 +302,7 @@ void Keys(Io& io, Like<FitFileText> auto& f) {
       "estimated from measurements, and their identifiability.");
   HeadKeys(
       io, f,
-      {"Name of the fit, and of its folder under runs/. Required unless `base` has it.",
+      {"Name of the fit, and of its folder under runs/. Required unless the `base` file has it.",
        "Description of the estimated parameters and the data, in a sentence or two.",
        "Another fit file to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",
@@ -315,10 +316,11 @@ void Keys(Io& io, Like<FitFileText> auto& f) {
   io("residuals", f.residuals, kNeeded,
      "Residuals: compared values of simulation and measurement.");
   io("groups", f.groups, kGroupings,
-     "Groups of correlated errors, left out together for standard errors and cross-validation.");
+     "Groups of residuals with correlated errors. Standard errors and cross-validation leave out "
+     "whole groups.");
   io("search", f.search);
   io("design", f.design, "Candidate measurements for `taut fit --design`.");
-  io("carried", f.carried, "Checks whether measured forces carry the applied loads.");
+  io("carried", f.carried, "Checks whether the measured forces balance the applied loads.");
 }
 
 }  // namespace taut::description

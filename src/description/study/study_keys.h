@@ -143,7 +143,7 @@ void Keys(Io& io, Like<StudyFileText> auto& s) {
          "methods.");
   HeadKeys(
       io, s,
-      {"Name of the study, and of its folder under runs/. Required unless `base` has it.",
+      {"Name of the study, and of its folder under runs/. Required unless the `base` file has it.",
        "Purpose of the study, in a sentence or two.",
        "Another study file to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` and `set` are merged by name.",
@@ -152,7 +152,7 @@ void Keys(Io& io, Like<StudyFileText> auto& s) {
        "order; `--set name=value` on the command line overrides them.",
        R"({"fastest_hz": "2"})"});
   io("experiment", s.experiment, kNeeded,
-     "Experiment file, relative to this file's folder. Required unless `base` has it.",
+     "Experiment file, relative to this file's folder. Required unless the `base` file has it.",
      Example{R"("../experiments/push_20n.yaml")"});
   io("set", s.set,
      "Parameters of the experiment or its model that this study overrides; `--set` on the command "
