@@ -98,9 +98,9 @@ def page(taut):
     return fill(TEMPLATE.read_text(), {
         "made_by": f"This page was made by `script/validate goal` with taut {version}: {303 + 3 * HEADINGS} runs of 60 s took "
                    f"{time.monotonic() - started:.0f} s on {machine()}.",
-        "starts": table(["terrain", "least [m]", "5 % [m]", "10 % [m]", "25 % [m]", "median [m]", "most [m]",
+        "starts": table(["terrain", "minimum [m]", "5 % [m]", "10 % [m]", "25 % [m]", "median [m]", "maximum [m]",
                          "starts with at least 1.5 m", "starts with at least 2 m", "winding work [J]",
                          "largest tension [N]"],
                         [row(name, outcome) for name, outcome in outcomes.items()]),
-        "ntrts_own": table(["terrain", "least [m]", "median [m]", "most [m]"], ntrts_own(taut)),
+        "ntrts_own": table(["terrain", "minimum [m]", "median [m]", "maximum [m]"], ntrts_own(taut)),
     })

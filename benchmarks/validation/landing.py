@@ -129,7 +129,7 @@ def landings_table(runs):
                      f"{100 * run.gap_m:.0f}", f"{100 * run.rebound_m:.0f}"])
     return table(["lands on", "impact speed [m/s]", "largest deceleration [m/s^2]", "time of the peak [ms]",
                   "smallest possible, v^2 / (2 s) [m/s^2]", "one spring, v^2 / s [m/s^2]",
-                  "least height of the payload [cm]", "rebound height [cm]"], rows)
+                  "smallest height of the payload [cm]", "rebound height [cm]"], rows)
 
 
 def gives_table(runs):
@@ -207,7 +207,7 @@ def page(taut):
         "gives": gives_table(runs),
         "dead": g(dead),
         "suspensions": table(["stiffness [N/m]", "damping [N s/m]", "largest deceleration [m/s^2]",
-                              "least height of the payload [cm]", "contacts besides strut ends and ground"],
+                              "smallest height of the payload [cm]", "contacts besides strut ends and ground"],
                              [[str(k), f"{DAMPING_S * k:.4g}",
                                "payload hits the ground" if "payload" in run.touches() else g(run.most), f"{100 * run.gap_m:.0f}",
                                run.touches()] for k, run in softer.items()]),

@@ -59,7 +59,7 @@ def stand(found, robot):
         force = run["tensions_n"]
         return [f"{run['height_m']:.4f}", str(run["contacts"]), f"{sum(force):.1f}", f"{min(force):.2f}",
                 f"{max(force):.2f}", speed(run["creep_m_per_s"])]
-    return table(["engine", "height of the center [m]", "contacts", "sum of tensions [N]", "least [N]", "largest [N]",
+    return table(["engine", "height of the center [m]", "contacts", "sum of tensions [N]", "smallest tension [N]", "largest tension [N]",
                   "speed of the center [m/s]"], rows_of(found["stand"][robot], cells))
 
 

@@ -257,7 +257,7 @@ def page(taut):
             values["duration"] = f"{trace.time_s[-1]:g}"
     values |= standing(Trace(taut.folder / stand.name), mass_kg)
     values |= {
-        "variants": table(["change", "forward [m]", "left [m]", "time to 1 m [s]", "least height of a girdle [mm]",
+        "variants": table(["change", "forward [m]", "left [m]", "time to 1 m [s]", "smallest height of a girdle [mm]",
                            "largest tilt [degrees]", "both feet of each diagonal with load, or both without [% of time]",
                            "largest tension [N]", "other contacts"], rows),
         "version": taut("--version").split()[-1], "runs": str(len(trots) + 1),

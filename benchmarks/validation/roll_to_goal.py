@@ -87,8 +87,7 @@ def row(name, runs):
 
 
 HEAD = ["terrain", "arrived within 0.5 m", "time [s]: first, median, 90 %, last", "arrived within 0.25 m",
-        "time [s]: first, median, 90 %, last", "nearest [m], median", "after 60 s [m], median", "after 60 s [m], most",
-        "warned"]
+        "time [s]: first, median, 90 %, last", "smallest distance from the goal [m], median", "distance from the goal after 60 s [m], median", "after 60 s [m], maximum", "runs with a warning"]
 
 
 def far_row(name, runs):

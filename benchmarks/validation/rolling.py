@@ -120,8 +120,8 @@ def moving_row(text, runs, way):
             f"{max(r.most_n for r in runs):.0f}", f"{first.power_w:.0f}"]
 
 
-MOVING = ["", "distance, first start [m]", "distance: least, median, most [m]", "path [m]", "turns, first start",
-          "turns: least, median, most", "ends set down", "sliding of ends [% of path]", "largest tension [N]",
+MOVING = ["", "distance, first start [m]", "distance: minimum, median, maximum [m]", "path [m]", "turns, first start",
+          "turns: minimum, median, maximum", "touchdowns of ends", "sliding of ends [% of path]", "largest tension [N]",
           "winding power [W]"]
 
 
@@ -199,7 +199,7 @@ def page(taut):
         "slope": table(MOVING, [moving_row("gait learned on the slope", runs["slope"], forward),
                                 moving_row("the gait for level ground", runs["slope_level_gait"], forward)]),
         "still": f"{1000 * runs['slope_still'][0].length_m:.1f}",
-        "craters": table(["rim height [m]", "motors", "out", "time [s]", "off the far side", "largest height of the center of mass [m]"],
+        "craters": table(["rim height [m]", "motors", "starts that leave the crater", "time [s]", "starts that come off the far side", "largest height of the center of mass [m]"],
                          [out_row(rim_m, "0.3 m/s, 500 N", runs[f"rim_{1000 * rim_m:.0f}"]) for rim_m in RIMS_M]
                          + [out_row(2, "NTRT's: 1000 m/s, 10 kN", runs["rim_ntrt"])]),
         "steps": ", ".join(f"{runs[f'step_{i}'][0].way_m:.1f} m at {1000 * step_s:g} ms"

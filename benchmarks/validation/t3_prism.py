@@ -145,7 +145,7 @@ def page(taut):
         "unloaded": f"{forces(unloaded.points('train'), 'untuned'):.2f}",
         "bias": f"{bias(unloaded.points('train')):+.1f}",
         "share": f"{p['value']:.4f}", "error": f"{error(p):.4f}", "verdict": p["verdict"],
-        "carried": table(["test", "least", "most", "mean"],
+        "carried": table(["test", "minimum", "maximum", "mean"],
                          [[c["experiment"][1:], *(f"{x:.3f}" for x in (min(carried(c)), max(carried(c)),
                                                                        sum(carried(c)) / len(carried(c))))]
                           for c in one.summary["carried"]]),

@@ -104,7 +104,7 @@ def compared_tables(beside, motors, boards):
                 shapes.append(["" if not itself else name, who, f"{1 / waves.strongest():.3f}", *(
                     [""] * 5 if itself else (f"{off.rms_n:.2f}", f"{off.means_n:.2f}", f"{100 * off.swing:.0f}",
                                              late_ms(off), f"{off.aligned_n:.2f}"))])
-    return (table(["experiment", "variant", "largest tension [N]", "against NTRT", "mean tension [N]", "swing [N]",
+    return (table(["experiment", "variant", "largest tension [N]", "relative to NTRT", "mean tension [N]", "swing [N]",
                    "rms difference from the simulation [N]", "largest difference [N]"], sizes),
             table(["experiment", "variant", "period [s]", "rms difference [N]", "difference of means [N]", "swing [%]", "delay [ms]",
                    "rms without means and delay [N]"], shapes))
@@ -114,8 +114,8 @@ def causes_table(causes, names, beside, path_of):
     """Formats one row per cause: the difference, for gaits also its composition."""
     head, rows = ["change"], []
     for name in names:
-        head += ["push: rms [N]", "most [N]"] if name == PUSH else [
-            f"{'sine' if name == SINE else 'learned gait'}: rms [N]", "means [N]", "swing [%]", "late [ms]"]
+        head += ["push: rms [N]", "largest [N]"] if name == PUSH else [
+            f"{'sine' if name == SINE else 'learned gait'}: rms [N]", "difference of means [N]", "swing [%]", "delay [ms]"]
     for cause in causes:
         row = [cause.title]
         for name in names:
@@ -133,8 +133,8 @@ def winding_table(motors, boards, strong):
         rows.append([f"{name}, with motors", *winding_cells(motors[name])])
         rows.append([f"{name}, emulated boards", *winding_cells(boards[name])])
         rows.append([f"{name}, emulated boards, P ten times as strong", *winding_cells(strong[name])])
-    return table(["run", "winding in at full voltage [% of the time]", "speed [cm/s]", "tension then [N]",
-                  "paying out [% of the time]", "speed [cm/s]", "tension then [N]"], rows)
+    return table(["run", "winding in at full voltage [% of the time]", "speed [cm/s]", "mean tension [N]",
+                  "paying out [% of the time]", "speed [cm/s]", "mean tension [N]"], rows)
 
 
 def winding_cells(path):

@@ -91,26 +91,27 @@ void SpinningTop(Report& report) {
     const std::string name = std::to_string(static_cast<int>(spin)) + " rad/s, 1 ms";
     WorldBatch world = MakeBatch(ModelOf(Top(spin)));
     const EnergyRange seen = Run(world, 1e-3, time_s);
-    report.AtMost("energy off, " + name, "J", seen.Off(), 4e-3);
+    report.AtMost("error of the energy, " + name, "J", seen.Off(), 4e-3);
     report.AtMost("steps with a warning (status bit), " + name, "1", seen.flagged, 0);
   }
   const BodyOnBall top = Top(200);
   const double at_1ms = PlaceError(top, 1e-3, 1), at_half = PlaceError(top, 5e-4, 1);
-  report.AtMost("place after 1 s, 200 rad/s, 1 ms", "m", at_1ms, 1e-4);
-  report.Order("place, 200 rad/s, 1 and 0.5 ms", at_1ms, at_half, 2, 1.9);
+  report.AtMost("position error after 1 s, 200 rad/s, 1 ms", "m", at_1ms, 1e-4);
+  report.Order("position error, 200 rad/s, 1 and 0.5 ms", at_1ms, at_half, 2, 1.9);
 }
 
 void SphericalPendulum(Report& report) {
   const BodyOnBall pendulum{{0.02, 0.02, 0.001}, -0.5, 0, {3, 1, 5}};
   WorldBatch world = MakeBatch(ModelOf(pendulum));
   const EnergyRange seen = Run(world, 1e-3, report.IsFull() ? 600 : 120);
-  report.AtMost("energy off, 1 ms", "J", seen.Off(), 3e-5);
+  report.AtMost("error of the energy, 1 ms", "J", seen.Off(), 3e-5);
   report.AtMost("gap of the joint", "m", seen.gap_m, 1e-11);
   // Three different moments, and an angular velocity along no axis of symmetry.
   const BodyOnBall uneven{{0.02, 0.05, 0.03}, -0.5, 0.3, {3, 1, 5}};
   const double at_1ms = PlaceError(uneven, 1e-3, 2), at_half = PlaceError(uneven, 5e-4, 2);
-  report.AtMost("place after 2 s, three different moments, 1 ms", "m", at_1ms, 1e-4);
-  report.Order("place, 1 and 0.5 ms", at_1ms, at_half, 2, 1.9);
+  report.AtMost("position error after 2 s, three different moments of inertia, 1 ms", "m", at_1ms,
+                1e-4);
+  report.Order("position error, 1 and 0.5 ms", at_1ms, at_half, 2, 1.9);
 }
 
 const SceneEntry kSpinningTop("joints", "Spinning top on a ball joint",

@@ -73,10 +73,10 @@ class Steps {
     gain_ = std::max(gain_, highest / std::abs(start));
   }
   void AddTo(Report& report) const {
-    report.AtMost("steps not solved, of " + std::to_string(count_), "1", unsolved_, 0);
+    report.AtMost("unsolved steps, of " + std::to_string(count_), "1", unsolved_, 0);
     report.AtMost("largest relaxation of inconsistent contacts", "m/s", relaxation_,
                   kMostRelaxationMPerS);
-    report.AtMost("energy above the start's", "1", gain_, 1e-9);
+    report.AtMost("energy gain above the initial value", "1", gain_, 1e-9);
   }
   double worst_of_mean() const { return worst_ * static_cast<double>(count_) / sum_; }
 
@@ -105,7 +105,8 @@ void Settle(Report& report, const Slab& slab) {
     speed = std::max(speed, test::Norm(world.Body(0, 6).velocity_m_per_s));
   }
   steps.AddTo(report);
-  report.AtMost("force of the ground at rest, of the weight", "1", weight, 1e-9);
+  report.AtMost("deviation of the ground force at rest from the weight (relative)", "1", weight,
+                1e-9);
   report.AtMost("speed of the slab at rest", "m/s", speed, 1e-9);
 }
 
@@ -137,8 +138,8 @@ void Heaps(Report& report, int rods, double friction, const std::vector<std::uin
     steps.Run(world, count);
   }
   steps.AddTo(report);
-  report.AtMost("most linear systems in a step, relative to the mean", "1", steps.worst_of_mean(),
-                kMostOfMean);
+  report.AtMost("largest number of linear systems in a step, relative to the mean", "1",
+                steps.worst_of_mean(), kMostOfMean);
 }
 
 void SmallHeap(Report& report) {

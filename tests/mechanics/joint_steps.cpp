@@ -66,7 +66,7 @@ void AroundTheLimit(Report& report, double margin, int body, const F& scene) {
   const double a = 2 * (1 + margin) - 1, grows = std::pow(a + std::sqrt(a * a - 1), 10);
   report.Near("growth from step 10 to step 20, " + percent + " above", "1", above.growth, grows,
               0.05 * grows);
-  report.Near("status bit of too long a step after 20 ms, " + percent + " above", "1",
+  report.Near("status bit \"step too long\" after 20 ms, " + percent + " above", "1",
               above.early_bits & kStatusStepTooLong, kStatusStepTooLong, 0);
 }
 

@@ -59,9 +59,9 @@ void SwingingRope(Report& report) {
                   1e-9);
     report.AtMost("deficit of the least length while taut below 0.5 m" + step, "m", 0.5 - shortest,
                   1e-9);
-    report.AtMost("energy above the start's" + step, "J", gained, 1e-12);
-    report.AtMost("swing of the energy while taut" + step, "J", most - least, 3e-5 * scale);
-    report.AtMost("outward force times distance" + step, "N m", pushed, 0);
+    report.AtMost("energy gain above the initial value" + step, "J", gained, 1e-12);
+    report.AtMost("variation of the energy while taut" + step, "J", most - least, 3e-5 * scale);
+    report.AtMost("outward force of the rope times its length" + step, "N m", pushed, 0);
     report.Near("status bits" + step, "1", world.Status(0).bits, kStatusOk, 0);
   }
 }
@@ -111,8 +111,8 @@ void SlackRope(Report& report) {
       const double off = std::abs(start - EnergyOf(world) - lost);
       report.AtMost("energy lost in the snatch, " + At(h, e), "J", off, 30 * h * h);
       report.Near("apex, " + At(h, e), "m", top, flight.apex_m, 20 * h * h);
-      report.AtMost("longest, above 0.5 m, " + At(h, e), "m", longest - 0.5, 1e-9);
-      report.AtMost("outward force times distance, " + At(h, e), "N m", pushed, 0);
+      report.AtMost("largest length above 0.5 m, " + At(h, e), "m", longest - 0.5, 1e-9);
+      report.AtMost("outward force of the rope times its length, " + At(h, e), "N m", pushed, 0);
     }
   }
 }
@@ -142,7 +142,7 @@ void SpinningBodyOnRope(Report& report) {
     }
     const std::string step = k == 0 ? ", 1 ms" : ", 250 us";
     report.AtMost("change of the energy" + step, "J", change[k], 1.5e-5 * h * h / 1e-6);
-    report.AtMost("longest above 0.5 m" + step, "m", longest - 0.5, 1e-9);
+    report.AtMost("largest length above 0.5 m" + step, "m", longest - 0.5, 1e-9);
   }
   report.Order("change of the energy, 1 ms and 250 us", change[0], change[1], 4, 1.8);
 }

@@ -107,8 +107,8 @@ void ReportFrame(Report& report, const std::string& name, RodNet net, double bou
   const double time_s = report.IsFull() ? 5 : 2;
   const EnergyRange seen = Run(world, 1e-3, time_s);
   reversed.Step(1e-3, StepsIn(time_s, 1e-3));
-  report.AtMost(name + ": energy off", "of it", seen.Off() / energy, bound);
-  report.AtMost(name + ": angular momentum off", "of it",
+  report.AtMost(name + ": error of the energy", "relative", seen.Off() / energy, bound);
+  report.AtMost(name + ": error of the angular momentum", "relative",
                 Distance(world.AngularMomentum(0), momentum) / test::Norm(momentum), 1e-12);
   report.AtMost(name + ": steps with a warning (status bit)", "1", seen.flagged, 0);
   report.AtMost(name + ": largest gap", "m", seen.gap_m, 1e-10);
@@ -258,8 +258,8 @@ void CardanJoints(Report& report) {
     for (int i = 0; i < 6; ++i) force_n = std::max(force_n, test::Norm(world.Joint(0, i).force_n));
     if (world.Status(0).bits != kStatusOk) ++flagged, world.ClearStatus(0);
   }
-  report.AtMost("ratio of the shafts' speeds off, 1 rad, 1 ms", "1", ratio_off, 5e-5);
-  report.AtMost("energy off", "of it", off / start, 1e-5);
+  report.AtMost("error of the ratio of the shafts' speeds, 1 rad, 1 ms", "1", ratio_off, 5e-5);
+  report.AtMost("error of the energy", "relative", off / start, 1e-5);
   // The shafts exchange 0.05 J and rotate by 1 rad in 0.1 s: torques of some 0.1 N m on arms of
   // 0.02 m.
   report.AtMost("largest force of a joint", "N", force_n, 10);
@@ -324,11 +324,11 @@ void StiffCablesOnJoints(Report& report) {
         const std::string what = std::string(scene.name) + ", 1e6 N/m, " +
                                  std::to_string(static_cast<int>(damping_n_s_per_m)) + " N s/m, " +
                                  std::to_string(static_cast<int>(1e3 * step_s)) + " ms: ";
-        report.AtMost(what + "energy gained", "of it", seen.gain_j / start, 1e-6);
+        report.AtMost(what + "energy gained", "relative", seen.gain_j / start, 1e-6);
         report.AtMost(what + "steps with a warning (status bit)", "1", seen.flagged, 0);
         report.AtMost(what + "largest gap", "m", seen.gap_m, 1e-6);
         if (!scene.is_free) continue;
-        report.AtMost(what + "angular momentum off", "of it",
+        report.AtMost(what + "error of the angular momentum", "relative",
                       Distance(world.AngularMomentum(0), momentum) / test::Norm(momentum), 1e-9);
       }
     }

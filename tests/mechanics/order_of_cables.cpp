@@ -58,7 +58,7 @@ void ReversedCables(Report& report) {
       const double order = Apart(as_listed, 1e-3, OrderedRobot(damping, on_ground, true), 1e-3);
       const double step = Apart(as_listed, 1e-3, as_listed, 2.5e-4);
       report.AtMost(where + ", " + std::to_string(static_cast<int>(damping)) +
-                        " N s/m: change by the order over error of the step",
+                        " N s/m: change due to the cable order, relative to the error of the step",
                     "1", order / step, 0.1);
     }
   }

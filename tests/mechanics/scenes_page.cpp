@@ -22,7 +22,8 @@ int main(int argc, char** argv) {
     Report report(Effort::kFull);
     scene.run(report);
     std::printf(
-        "\n**%s** (oracle: %s)\n\n| quantity | unit | expected | measured |\n|---|---|---|---|\n",
+        "\n**%s** (reference: %s)\n\n| quantity | unit | expected | measured "
+        "|\n|---|---|---|---|\n",
         scene.name, scene.oracle);
     for (const Finding& f : report.findings()) {
       char expected[80];

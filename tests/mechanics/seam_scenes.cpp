@@ -40,7 +40,7 @@ struct Worst {
 void ReportTo(Report& report, const Worst& worst, double position_m, double energy_j) {
   report.AtMost("largest distance", "m", worst.position_m, position_m);
   report.AtMost("largest gain of energy", "J", worst.energy_j, energy_j);
-  report.Near("runs with a status", "1", worst.not_good, 0, 0);
+  report.Near("runs with a status bit", "1", worst.not_good, 0, 0);
 }
 
 /// Three pieces of 1 m, all pairs of kinds, all bodies: uniform motion.
@@ -251,7 +251,7 @@ void WallBesideAFloor(Report& report) {
       }
     }
   }
-  report.AtMost("distance from the place in the corner", "m", off_m, 1e-9);
+  report.AtMost("distance from the position in the corner", "m", off_m, 1e-9);
 }
 
 /// Rolling ball and sliding crate: their motion must be as on a plane and straight on.

@@ -152,11 +152,12 @@ void Drops(Report& report) {
   }
   const std::string all = std::to_string(drops.size()) + " drops of 0.45 m";
   report.AtMost(all + ", largest gain of energy", "1", gained, 1e-6);
-  report.AtMost(all + " with a status", "1", with_status, 0);
+  report.AtMost(all + " with a status bit", "1", with_status, 0);
   // The robot stands on three rods or has rolled over, bouncing by a few centimeters at most.
-  report.AtMost(all + ", highest center at the end", "m", highest, 0.36);
-  report.AtMost(all + ", 0.26 m less the lowest", "m", 0.26 - lowest, 0);
-  report.AtMost(all + ", kinetic energy at the end but of axial spin and rolling", "J", fastest,
+  report.AtMost(all + ", largest height of the center of mass at the end", "m", highest, 0.36);
+  report.AtMost(all + ", 0.26 m minus the smallest height of the center of mass at the end", "m",
+                0.26 - lowest, 0);
+  report.AtMost(all + ", kinetic energy at the end without axial spin and rolling", "J", fastest,
                 report.IsFull() ? 0.05 : 0.5);
 }
 
@@ -191,8 +192,8 @@ void KeepsEnergy(Report& report, double k, double h, bool kicked, double time_s)
   const std::string what = std::string(kicked ? "kicked" : "symmetric") + ", " +
                            std::to_string(static_cast<int>(k)) + " N/m, " +
                            std::to_string(static_cast<int>(1e3 * h)) + " ms: ";
-  report.AtMost(what + "energy off by", "1", off, 1e-3);
-  report.AtMost(what + "angular momentum off by", "kg m^2/s",
+  report.AtMost(what + "error of the energy (relative)", "1", off, 1e-3);
+  report.AtMost(what + "error of the angular momentum", "kg m^2/s",
                 Norm(world.AngularMomentum(0) - momentum), 1e-9);
 }
 
@@ -299,11 +300,12 @@ void ThroughEyelets(Report& report) {
       if (b > 0) {
         report.AtMost(what + "energy gained", "1", most, 1e-6);
       } else {
-        report.AtMost(what + "energy off by", "1", off, 1e-6);
+        report.AtMost(what + "error of the energy (relative)", "1", off, 1e-6);
       }
-      report.AtMost(what + "angular momentum off by", "kg m^2/s",
+      report.AtMost(what + "error of the angular momentum", "kg m^2/s",
                     Norm(world.AngularMomentum(0) - spin), 1e-9);
-      report.AtMost(what + "momentum off by", "kg m/s", Norm(world.Momentum(0) - momentum), 1e-9);
+      report.AtMost(what + "error of the momentum", "kg m/s", Norm(world.Momentum(0) - momentum),
+                    1e-9);
     }
   }
 }

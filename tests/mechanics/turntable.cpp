@@ -108,7 +108,7 @@ void PlankOnDrums(Report& report) {
   WorldBatch world = test::MakeBatch(def);
   world.Step(1e-3, 4000);
   const BodyState end = world.Body(0, plank);
-  report.Near("way in 4 s", "m", end.position_m.x + 0.3, 4 * spin * radius, 1e-7);
+  report.Near("displacement in 4 s", "m", end.position_m.x + 0.3, 4 * spin * radius, 1e-7);
   report.AtMost("difference from the surface speed of the drums", "m/s",
                 Distance(end.velocity_m_per_s, {spin * radius, 0, 0}), 1e-9);
 }
