@@ -60,7 +60,7 @@ std::optional<Vec3> ReadPoint(std::string_view& line) {
   return Vec3{x[0], x[1], x[2]};
 }
 
-/// Calls `use(line, number)` for every line, until it returns false.
+/// Calls `use(line, number)` for every line, until `use` returns false.
 template <class Use>
 void EachLine(std::string_view text, const Use& use) {
   int number = 0;

@@ -39,7 +39,7 @@ std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out);
 /// Returns the triangles and corners of one part; `parts` of the result is empty.
 MeshFile PartOf(const MeshFile& mesh, std::size_t part);
 
-/// Wording of messages: name of the mesh, and a second remedy for holes besides "close it".
+/// Words of messages: name of the mesh, and a remedy for holes in addition to "close it".
 struct MeshWords {
   std::string what, or_else;
 };

@@ -34,8 +34,8 @@ std::vector<Driver> DriversOf(const ExperimentSpec& experiment, const RobotSpec&
   return drivers;
 }
 
-/// Returns the reason why an action cannot change a cable. Returns an empty text if it can, or if
-/// the action is invalid for another reason.
+/// Returns the reason why an action cannot change a cable. Returns an empty text if the action can
+/// change the cable, or is invalid for another reason.
 std::string Obstacle(const EnvironmentAction& action, const CableDef& cable, const Driver& driver) {
   const bool by_length = action.rest_length_m || action.rest_length_rate_m_per_s;
   if (by_length == action.velocity_input_m_per_s.has_value()) return {};
@@ -69,7 +69,7 @@ class Actions {
 
   std::vector<EnvironmentAction> Take() {
     std::sort(of_cables_.begin(), of_cables_.end(), [](const auto& a, const auto& b) {
-      return a.cable < b.cable;  // equal cables were already reported
+      return a.cable < b.cable;  // equal cables have been reported
     });
     of_cables_.insert(of_cables_.end(), of_numbers_.begin(), of_numbers_.end());
     return std::move(of_cables_);
@@ -77,7 +77,7 @@ class Actions {
 
  private:
   void AddCables(const EnvironmentActionText& text, const Value& selector) {
-    std::map<std::string, std::string> refused;  // reason -> names of cables: one error per reason
+    std::map<std::string, std::string> refused;  // Names of cables by reason.
     for (const int cable : SelectCables(selector, "environment.actions.cables", &robot_, scope_)) {
       const auto index = static_cast<std::size_t>(cable);
       const CableDef& def = robot_.def.cables[index];

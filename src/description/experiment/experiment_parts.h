@@ -40,8 +40,7 @@ std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
                                           const RobotSpec* robot, bool actuators_known,
                                           const Scope& scope);
 
-/// Adds the motor boards to the controllers, as the last one. Reports cables that boards cannot
-/// drive.
+/// Adds the motor boards as the last controller. Reports cables that boards cannot drive.
 void AddBoards(const BoardsText& boards, const RobotSpec* robot, const Scope& scope,
                ExperimentSpec& experiment);
 

@@ -6,10 +6,10 @@
 namespace taut::description {
 namespace {
 
-/// Checks that a delay is a whole number of sensor periods, so that it does not depend on the times
-/// of reading. `what`: the sensor's key in `map`.
+/// Checks that a delay is a whole number of sensor periods, so that the delay does not depend on
+/// the times of readings. `what`: the sensor's key in `map`.
 void CheckDelay(const MapReader& map, const char* what, double delay_s, double period_s) {
-  constexpr double kLongest = 10000;  // number of buffered samples
+  constexpr double kLongest = 10000;  // largest number of buffered samples
   const Value* sensor = map.Find(what);
   const double periods = delay_s / period_s;
   if (!sensor || std::isnan(periods)) return;

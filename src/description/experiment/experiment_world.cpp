@@ -35,7 +35,7 @@ std::vector<int> SelectBodies(const Value& value, const std::string& what, const
 }  // namespace
 
 void Check(const MapReader& map, ScaleText& scale) {
-  std::string key;  // if several are present, the reader has reported an error and set none
+  std::string key;  // if several keys are present, the reader has reported an error and set none
   const std::optional<double> factors[] = {scale.friction, scale.mass, scale.stiffness,
                                            scale.damping};
   for (std::size_t i = 0; i < kScaledQuantities.size(); ++i) {

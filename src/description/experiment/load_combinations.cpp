@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kSamePoint_m = 1e-9;
 
-/// Position of a cable or a bar in the changes of length of a sum.
+/// Index of the length change of each cable or bar in the list of a combination.
 using Positions = std::map<int, std::size_t>;
 
-/// Adds `factor` times the changes of length to those of the sum.
+/// Adds the length changes `from` of a load case, times `factor`, to a combination, `sum`.
 void AddLengthenings(const std::vector<LoadCaseSpec::Lengthening>& from, double factor,
                      std::vector<LoadCaseSpec::Lengthening>& sum, Positions& positions) {
   for (const LoadCaseSpec::Lengthening& one : from) {
@@ -156,7 +156,7 @@ void AddCombinations(const std::vector<LoadCombinationText>& combinations, const
     known.push_back(one.name);
     loads += LoadCount(one);
   }
-  // Before memory is allocated: a few bytes of the file repeat all loads of a case.
+  // Check before memory is allocated: a few bytes of the file can repeat all loads of a case.
   for (const LoadCombinationText& text : combinations) {
     for (const auto& factor : text.factors.items) {
       const auto found = case_of.find(factor.name);

@@ -11,8 +11,9 @@
 
 namespace taut::description {
 
-/// Limits of an experiment: load cases and combinations; elements of the robot that their selectors
-/// examine, all selectors together; forces, settlements and changes of length in all of them.
+/// Limits of an experiment: number of load cases and combinations; number of elements that all
+/// selectors together examine; number of forces, settlements and changes of length in all load
+/// cases.
 inline constexpr std::size_t kMostCases = 10'000, kMostExamined = 100'000'000,
                              kMostLoads = 10'000'000;
 
@@ -26,8 +27,8 @@ void RefuseLoads(const SourceRef& at, const Scope& scope);
 class LineLoads {
  public:
   LineLoads(const RobotSpec& robot, const Scope& scope);
-  /// Adds all line loads to the forces of `out`: half of each member's load (of each span's, for a
-  /// cable) at either end. Forces of members that meet at a node are added up.
+  /// Adds all line loads to the forces of `out`: half of the load of a member (for a cable: of each
+  /// span) acts at each end. Forces of members that meet at a node are added up.
   void AddTo(LoadCaseSpec& out, const std::vector<LineLoadText>& loads);
 
  private:

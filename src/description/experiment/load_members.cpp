@@ -39,7 +39,7 @@ std::vector<LoadMember> SelectMembers(const Value& selector, const std::string& 
 
 void CheckRestLength(const std::string& load_case, const std::string& member, double rest_m,
                      double by_m, const SourceRef& at, const Scope& scope) {
-  if (!(rest_m + by_m <= 0)) return;  // NaN was reported before
+  if (!(rest_m + by_m <= 0)) return;  // NaN: an error was reported before
   scope.out.Error("load_case.no_rest_length", at,
                   "the load case \"" + load_case + "\" makes the rest length of \"" + member +
                       "\" zero or negative (it is " + Shown(rest_m) + " m without the load case)");

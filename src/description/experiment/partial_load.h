@@ -10,8 +10,8 @@
 namespace taut::description {
 
 /// Loads like `LoadExperiment`. If loading fails, but model and controllers are valid, calls `look`
-/// with the readable part. There, the names of bodies, cables and controllers are known; numbers
-/// may be missing (NaN).
+/// with the readable part. In this part, the names of bodies, cables and controllers are known;
+/// numbers may be missing (NaN).
 std::optional<ExperimentSpec> LoadPartial(const std::string& path, const Overrides& overrides,
                                           Diagnostics& out,
                                           const std::function<void(const ExperimentSpec&)>& look);

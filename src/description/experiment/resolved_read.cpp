@@ -275,7 +275,7 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
       robot.cable_tags.size() != robot.def.cables.size()) {
     out.Error("resolved.tags_missing", at, "every node and every cable needs its tags");
   }
-  const std::size_t joint_tags = robot.joint_tags.size();  // files of earlier versions have none
+  const std::size_t joint_tags = robot.joint_tags.size();  // absent from files of earlier versions
   if (joint_tags != 0 && joint_tags != robot.def.joints.size()) {
     out.Error("resolved.joint_tags_missing", at, "every joint needs its tags");
   }

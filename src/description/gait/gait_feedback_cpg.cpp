@@ -169,7 +169,7 @@ void Resolve(const FeedbackCpgGait& cpg, const RobotSpec& robot, ResolvedGait& r
     if (!found || !KeepGroups(cpg, robot.def.name, *found, out)) return;
     graph = std::move(*found);
   }
-  std::map<int, int> joint_of;  // by the number at the end of the cable's name
+  std::map<int, int> joint_of;  // joint by the number at the end of a cable's name
   std::vector<int> number;
   for (const int cable : graph.cables) {
     const auto place = PlaceInChain(robot.def.cables[static_cast<std::size_t>(cable)].name);

@@ -22,8 +22,8 @@ constexpr double kHighestHz = 30.0, kHighestAmplitude = 30.0;
 // NTRT's descending command is 2. Frequency and amplitude are offset + 2 scale with offset = scale.
 constexpr double kCommandFactor = 3.0;
 constexpr double kConvergencePerS = 20.0;
-/// Reproduces NTRT's integration within 2e-6 m/s over a minute. For walking, steps of 2 ms would
-/// suffice: their error is 4e-3 m/s (docs/theory/gaits.md).
+/// With this step, commands agree with NTRT within 2e-6 m/s over a minute. For walking, steps of 2
+/// ms would suffice: the error of the commands is then 4e-3 m/s (docs/theory/gaits.md).
 constexpr double kIntegratorStepS = 0.00025;
 constexpr int kEdges = 57;
 /// Nodes whose sign LearningSpineJSON inverts "for hardware comparison".

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kRoles = 8;  // cables per joint
+constexpr int kRoles = 8;  // number of cables per joint
 /// Small step, since amplitudes converge at rates up to 600 1/s.
 constexpr double kFeedbackStepS = 0.001;
 /// Cables of a joint in the order of NTRT's nodes.

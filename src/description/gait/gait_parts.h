@@ -24,7 +24,7 @@ constexpr Spellings Driven(const char* of_velocity, const char* of_rest_length) 
 /// second cable from the front.
 struct CablePlace {
   std::string role;
-  int number = 0;  ///< Counts from 1.
+  int number = 0;  ///< Position of the cable in the chain, from 1 at the front.
 };
 
 /// Splits a cable name. Returns nothing if it does not end in _1, _2, ...

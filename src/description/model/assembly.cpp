@@ -129,7 +129,7 @@ class Assembler {
       node_of_.emplace(node.name, static_cast<int>(assembly_.nodes.size()));
       assembly_.nodes.push_back(std::move(node));
     }
-    for (const NodeText& text : part.nodes) {  // only now are all nodes of the copy known
+    for (const NodeText& text : part.nodes) {  // after all nodes of the copy are known
       if (text.fixed_to.text.empty()) continue;
       const auto other = node_of_.find(FullName(instance, text.fixed_to.text));
       if (other == node_of_.end()) continue;

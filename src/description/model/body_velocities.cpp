@@ -35,7 +35,7 @@ void SetBodyVelocities(const BodyInstances& in, ModelDef& model, Diagnostics& ou
     if (def.fixed || mass[instance] == 0.0) continue;
     const Instance& moving = in.assembly.instances[instance];
     const Vec3 arm = def.com_m - (1.0 / mass[instance]) * moment[instance];
-    const bool alone = in.bodies_in_instance[instance] == 1;  // then `arm` is only rounding error
+    const bool alone = in.bodies_in_instance[instance] == 1;  // if so, `arm` is rounding error
     def.velocity_m_per_s =
         alone ? moving.velocity_m_per_s
               : moving.velocity_m_per_s + Cross(moving.angular_velocity_rad_per_s, arm);

@@ -324,8 +324,8 @@ class BodyBuilder {
     return same ? instance : -1;
   }
 
-  /// Returns the name of the placement if the body is all of it; otherwise the name of the body's
-  /// first rod or node.
+  /// Returns the name of the placement if the body is the whole placement; otherwise the name of
+  /// the body's first rod or node.
   std::string Name(const Weld& weld) const {
     const int instance = InstanceOf(weld);
     if (instance >= 0 && bodies_in_instance_[instance] == 1) {
@@ -351,7 +351,7 @@ class BodyBuilder {
   Diagnostics& out_;
   std::vector<Weld> welds_;
   std::vector<Pin> pins_;
-  std::vector<const Weld*> welds_with_body_;  ///< Per body.
+  std::vector<const Weld*> welds_with_body_;  ///< Weld of each body.
   std::vector<int> instance_of_body_, bodies_in_instance_;
   BodyOfNode body_of_node_;
   std::vector<int> body_of_pair_;  ///< Body of each pair that is a rod or beam.

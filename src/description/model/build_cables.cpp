@@ -117,7 +117,7 @@ class CableMaker {
     }
     if (one_body && model_.builders_complete && assembly_.complete) {
       const int body = cable.attachments[0].body;
-      if (body == kWorld && !out_.ok()) return true;  // already reported: nodes without a body
+      if (body == kWorld && !out_.ok()) return true;  // reported: the node belongs to no body
       once_(
           "cable.both_ends_on_one_body", pair.at,
           "both ends of the cable \"" + pair.name + "\" are on " +
@@ -186,7 +186,7 @@ void BuildCables(const ModelText& model, const Assembly& assembly, const Assignm
 
 void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
   const std::vector<BodyDef>& bodies = robot.def.bodies;
-  const int world = static_cast<int>(bodies.size());  // stands for all bodies fixed in the world
+  const int world = static_cast<int>(bodies.size());  // index for all bodies fixed in the world
   base::UnionFind sets(bodies.size() + 1);
   const auto index = [&](int body) { return base::IsFixed(robot.def, body) ? world : body; };
   for (const CableDef& cable : robot.def.cables) {

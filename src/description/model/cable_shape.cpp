@@ -76,7 +76,7 @@ class CableShaper {
             nodes[end].position_m + (sphere->radius_m / length) * leg;
       } else if (const auto on_rod = OnRod(node, nodes[next].position_m)) {
         cable.attachments[end].position_m = *on_rod;
-      } else if (BodyOf(node) != kWorld) {  // this node has no surface
+      } else if (BodyOf(node) != kWorld) {  // no sphere or rod whose surface the cable could leave
         once_("cable.end_without_solid", builder.ends_at,
               "cable.ends: the node \"" + in_.assembly.nodes[node].name + "\" of the cable \"" +
                   pair.name + "\" has no sphere, and no rod ends there",

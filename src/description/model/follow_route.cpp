@@ -100,8 +100,9 @@ class RouteFollower {
     return good && HasASide(i);
   }
 
-  /// Returns whether the wheel is on one side of the cable, left or right. It is not if the axis is
-  /// parallel to the line between the neighboring points. Wheels with whole turns always qualify.
+  /// Returns whether the wheel is on one side of the cable, left or right. Returns false if the
+  /// axis is parallel to the line between the neighboring points. Wheels with whole turns always
+  /// qualify.
   bool HasASide(std::size_t i) {
     const RouteText& element = pair_.route[i];
     if (i == 0 || i + 1 == pair_.route.size() || element.turns > 0) return true;

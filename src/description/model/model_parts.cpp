@@ -117,7 +117,7 @@ void Check(const MapReader& map, NodeText& node) { CheckTags(map, node.tags); }
 bool ReadShort(const Value& value, const std::string& path, const Scope& scope, NodeText& out) {
   if (value.kind == Value::Kind::kMap) return false;
   if (value.kind == Value::Kind::kSequence) {
-    Scope metres = scope;  // the path ends with the node's name
+    Scope metres = scope;  // the path ends with the node's name, without a unit
     metres.unit = "m";
     out.at_m = ReadVec3(value, path, metres);
   } else {

@@ -25,8 +25,8 @@ constexpr double kFinest = 1e-6;
 /// Largest plausible ratios between the largest and smallest element of a model. The values are
 /// generous, since large structures have small parts, too.
 constexpr double kMaxSizeRatio = 1e3, kMaxMassRatio = 1e6, kMaxStiffnessRatio = 1e6;
-/// Air has 1.2 kg/m^3, osmium 22 600 kg/m^3. The range is wider, since thin rods often represent
-/// thicker and heavier parts.
+/// The density of air is 1.2 kg/m^3, of osmium 22 600 kg/m^3. The range is wider, since thin rods
+/// often represent thicker and heavier parts.
 constexpr double kLeastDensity = 0.1, kGreatestDensity = 1e6;  // [kg/m^3]
 
 /// Returns the spacing of floating-point numbers at x.
@@ -95,8 +95,8 @@ ItemList Stiffnesses(const RobotSpec& robot) {
   return stiffnesses;
 }
 
-/// Warns of a large ratio at the larger item, since a number that is too large is the usual
-/// mistake.
+/// Warns of a large ratio at the position of the larger item, since numbers are usually too large
+/// by mistake.
 void WarnOfRatio(const ItemList& items, double most, const char* what, const char* unit,
                  Diagnostics& out) {
   if (items.empty()) return;
@@ -187,7 +187,7 @@ void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* p
     if (!too_far(far_m)) continue;
     complain(place ? *place : robot.node_sources[n], "the node \"" + def.nodes[n].name + "\"",
              far_m);
-    break;  // report the first node only; the others are probably as far away
+    break;  // report the first node only; other nodes are probably as far away
   }
   for (std::size_t p = 0; p < def.planes.size(); ++p) {
     // The engine stores the plane's distance from the origin, so this distance determines the

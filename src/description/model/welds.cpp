@@ -45,8 +45,9 @@ class WeldFinder {
     }
   }
 
-  /// Assigns the nodes of class-k rods to bodies. A node held by another solid or an anchor stays
-  /// with it. Otherwise it joins the first of its class-k rods. All other rods are pinned to it.
+  /// Assigns the nodes of class-k rods to bodies. A node of another solid or an anchor stays with
+  /// this solid or anchor. Otherwise the node joins the body of its first class-k rod. All other
+  /// rods are pinned to the node.
   void JoinTurning() {
     std::vector<bool> taken(assembly_.nodes.size() + assembly_.pairs.size(), false);  // per root of
                                                                                       // a set

@@ -31,7 +31,7 @@ MotorSettings SettingsOf(const CableDef& cable, int encoder_lines);
 /// Returns the gains of a cable as settings.
 MotorSettings SettingsOf(const ImpedanceGains& gains);
 
-/// Returns the gains of a cable in any impedance controller; null without.
+/// Returns the gains of a cable in any impedance controller; null if there are none.
 const ImpedanceGains* GainsOf(const std::vector<ControllerSpec>& controllers, int cable);
 
 /// Returns the cables with actuators, in the order of their motors.

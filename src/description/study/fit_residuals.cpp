@@ -117,7 +117,7 @@ std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
          NamedExperiments(text.experiments, "residuals", experiments, scope)) {
       const FitExperiment& one = experiments[e];
       if (!r.channels.empty() && one.data_file.empty() && !of_design) {
-        // Skip an experiment without data: it can have reference values only.
+        // Skip an experiment without data, since it can have only reference values.
         if (!text.experiments.empty() && known[e]) {
           scope.out.Error("residual.no_data", text.at, "residuals: " + one.name + " has no `data`");
         }

@@ -63,8 +63,8 @@ class Writer {
     RefuseModel(out_, what, hint);
   }
 
-  /// Adds a tag to the pairs of each builder, so that it needs no list of names: `rod`, or `rod_1`,
-  /// `rod_2`, ...
+  /// Adds a tag to the pairs of each builder, so that the builder needs no list of names: `rod`, or
+  /// `rod_1`, `rod_2`, ...
   void TagSolids() {
     int number = 0;
     for (const WrittenBuilder& builder : m_.on_pairs) {

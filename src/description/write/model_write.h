@@ -71,7 +71,7 @@ double LumpedOn(const ModelDef& def, int body);
 void TakeJoints(const RobotSpec& robot, WrittenModel& model, Diagnostics& out);
 
 /// Decomposes a robot and reports features that a model file cannot express. The result is complete
-/// if there are none.
+/// if there are no such features.
 WrittenModel TakeApart(const RobotSpec& robot, Diagnostics& out);
 std::string TextOf(const RobotSpec& robot, WrittenModel model, Diagnostics& out);
 
@@ -79,7 +79,7 @@ std::string TextOf(const RobotSpec& robot, WrittenModel model, Diagnostics& out)
 /// and returns false. `read` may have more nodes.
 bool CheckReadBack(const RobotSpec& robot, const RobotSpec& read, Diagnostics& out);
 
-/// Reports an error of this writer. All of them begin with the same words.
+/// Reports an error of this writer. All its messages begin with the same words.
 void RefuseModel(Diagnostics& out, const std::string& what, const std::string& hint = {});
 
 /// Returns the text before the last dot, which is the placement of a node; empty if there is none.

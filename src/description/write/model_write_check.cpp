@@ -144,7 +144,7 @@ class Comparison {
   }
 
   void Bodies() {
-    std::vector<int> bodies;  // without boxes of the terrain
+    std::vector<int> bodies;  // bodies except boxes of the terrain
     for (int i = 0; i < static_cast<int>(a_.bodies.size()); ++i) {
       if (!IsTerrain(a_, i)) bodies.push_back(i);
     }

@@ -84,8 +84,8 @@ class ModelDecomposer {
   }
   std::string BodyName(int body) const { return def_.bodies[static_cast<std::size_t>(body)].name; }
 
-  /// Returns the mass of a shape as its builder gives it. If this is unknown, returns the mass of
-  /// the body, if the shape is its only one.
+  /// Returns the mass of a shape as its builder gives it. If this mass is unknown, returns the mass
+  /// of the body, if the body has no other shape.
   SolidMass MassOf(const std::vector<SolidMass> SolidsSpec::*list, std::size_t index, int body) {
     if (robot_.solids) return ((*robot_.solids).*list)[index];
     int shapes = 0;

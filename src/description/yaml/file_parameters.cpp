@@ -92,7 +92,7 @@ std::vector<ParameterText> ReadParameters(const Value* block, Diagnostics& out) 
       out.Error("parameter.not_a_number", entry.value->at,
                 "parameters." + entry.key + " must be a number or an expression, got " +
                     std::string(KindName(*entry.value)));
-      parameters.push_back({entry.key, "", {}});  // no second message from its users
+      parameters.push_back({entry.key, "", {}});  // uses of the name cause no further error
     } else {
       parameters.push_back({entry.key, entry.value->text, entry.value->at});
     }
@@ -146,7 +146,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     for (const std::string& name : NamesIn(parameters[i].expression)) {
       const auto found = places.find(name);
-      if (found == places.end()) continue;  // reported later, by the evaluation
+      if (found == places.end()) continue;  // unknown name: the evaluation reports it later
       needs[i].push_back(found->second);
       users[found->second].push_back(i);
     }
@@ -154,14 +154,14 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
     if (open[i] == 0) ready.push_back(i);
   }
 
-  // Already contains all names, so that hints can suggest them.
+  // Contains all names from the start, so that hints can suggest them.
   NameTable values;
   for (const ParameterText& parameter : parameters) values[parameter.name] = kUnknown;
   std::vector<bool> done(parameters.size(), false);
   const auto evaluate = [&](std::size_t i) {
     const ParameterText& parameter = parameters[i];
     done[i] = true;
-    if (parameter.at.file.empty()) return;  // the reader has reported this parameter
+    if (parameter.at.file.empty()) return;  // already reported by the reader
     Evaluated result = EvaluateQuantity(parameter.expression, values, parameter.name);
     if (!result.error.empty()) {
       out.Error("parameter.bad_expression", parameter.at,

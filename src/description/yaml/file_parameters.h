@@ -18,7 +18,7 @@ struct ParameterText {
 };
 
 /// `--set` overrides and their use. An experiment and its model share one set. An override is an
-/// error if neither of them has the parameter.
+/// error if neither the experiment nor the model has the parameter.
 class OverrideSet {
  public:
   explicit OverrideSet(const Overrides& overrides);
@@ -54,7 +54,7 @@ void ReportUnknownParameter(const ParameterText& parameter, const std::vector<st
 /// Reads a `parameters:` map. `block` may be null: no parameters.
 std::vector<ParameterText> ReadParameters(const Value* block, Diagnostics& out);
 
-/// Merges `changes` into `base`: replaces parameters with the same name and adds the others.
+/// Merges `changes` into `base`: replaces parameters with equal names and adds new parameters.
 void MergeParameters(std::vector<ParameterText>& base, const std::vector<ParameterText>& changes);
 
 /// Evaluates parameters, which may refer to each other in any order. Reports each parameter that

@@ -48,7 +48,7 @@ bool Accepts(const std::vector<std::string>& kinds, const char* kind) {
 /// Returns the YAML files of a folder with their kinds, sorted by name. The inputs of a run are an
 /// experiment.
 std::vector<std::pair<fs::path, std::string>> YamlFiles(const fs::path& folder) {
-  constexpr std::size_t kMostFiles = 200;  // a folder of a robot has a few
+  constexpr std::size_t kMostFiles = 200;  // the folder of a robot contains a few
   std::vector<std::pair<fs::path, std::string>> files;
   std::error_code failed;
   std::size_t count = 0;
@@ -65,14 +65,16 @@ std::vector<std::pair<fs::path, std::string>> YamlFiles(const fs::path& folder) 
   return files;
 }
 
-/// Returns the file that a folder stands for; the folder itself if there is none or after an error.
+/// Returns the file that a folder represents; the folder itself if there is no such file or after
+/// an error.
 std::string FileOfFolder(const std::string& given, const std::vector<std::string>& kinds,
                          Diagnostics& out) {
-  const fs::path folder = (fs::path(given) / "").parent_path();  // without a slash at its end
+  const fs::path folder = (fs::path(given) / "").parent_path();  // without the slash at the end
   if (Accepts(kinds, kTrace) && IsFile(TraceOfRun(given))) return given;
   std::optional<std::vector<std::pair<fs::path, std::string>>> files;
   for (const std::string& kind : kinds) {
-    // A file that is named after its kind is taken even if it has errors, which are then reported.
+    // A file that is named after its kind is selected even if it has errors, so that these are
+    // reported.
     const KindOfInput* const known = FindKind(kind);
     if (known == nullptr) continue;
     const fs::path named = folder / (kind + known->extension);
