@@ -30,7 +30,8 @@ void Keys(Io& io, Boards& b) {
          "broadcast sends V0 of "
          "`impedance`, or the rest lengths of `position`; the firmware's control loop computes the "
          "duties of the motors at 1 kHz. Controllers receive the boards' readings. All cables with "
-         "an actuator need a `dc_motor`, and impedance control must drive all of them or none.",
+         "an actuator need a `dc_motor`, and impedance control must drive all of these cables or "
+         "none.",
          R"({"force_p_per_n": 0.03, "force_i_per_n_s": 0.3})");
   io("broadcast_s", b.broadcast_s, Bound{.least = 0.001, .most = 0.029}, kFixed,
      "Time between two broadcasts, a whole number of milliseconds. Boards replace V0 by 0 after "

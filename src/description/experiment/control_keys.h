@@ -153,8 +153,8 @@ void GaitInputKeys(Io& io, Input& v, const char* example = nullptr) {
   }
   io("blend_s", v.blend_s, LaterThan{0.5}, Bound::kNonNegative,
      "Duration of a gait change, in which the weight of the new gait rises smoothly from 0 to 1. "
-     "It has no effect on a change between networks with the same oscillators: their phases and "
-     "amplitudes continue with "
+     "This duration has no effect on a change between networks with the same oscillators: the "
+     "phases and amplitudes of the oscillators continue with "
      "the new gait's parameters.");
 }
 
@@ -174,7 +174,8 @@ void Keys(Io& io, Like<VelocityInputText> auto& v) {
 template <class Io>
 void Keys(Io& io, Like<RestLengthInputText> auto& v) {
   io.Map("rest_length_input", "controller.rest_length_input",
-         "Gait with `drives: rest_length` and a separate clock. Its signals are added to the "
+         "Gait with `drives: rest_length` and a separate clock. The signals of the gait are added "
+         "to the "
          "programs of `position`, and to the initial rest length of cables without a program. "
          "`position` is optional, `impedance` not allowed.",
          R"({"gait": "../gaits/rest_length_sine.yaml", "period_s": 0.01})");
@@ -185,7 +186,8 @@ void Check(const MapReader& map, GaitInputText& input);
 template <class Io, Either<ControllerSpec, ControllerText> Controller>
 void Keys(Io& io, Controller& c) {
   io.Map("controller", "controller",
-         "Controller with a clock. It has either `impedance`, or at least one of `position` and "
+         "Controller with a clock. A controller has either `impedance`, or at least one of "
+         "`position` and "
          "`rest_length_input`.");
   io("name", c.name, kNeeded, kName, "Name of the controller.");
   io("period_s", c.clock.period_s, Bound::kPositive,

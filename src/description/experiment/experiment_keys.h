@@ -232,7 +232,7 @@ void Keys(Io& io, Goal& g) {
          "`goal_network` or "
          "`toward_goal`, and by the measure `nearer` of a study's objective.",
          R"({"at_m": [3.5, 0, 0], "body": "segment_2"})");
-  io("at_m", g.at_m, kNeeded, "Goal point. Its height is ignored.");
+  io("at_m", g.at_m, kNeeded, "Goal point; the height (z) is ignored.");
   if constexpr (Io::kResolved) {
     io("body", g.body);
   } else {
@@ -307,8 +307,8 @@ void Keys(Io& io, Experiment& e) {
             "this file replaces the whole key of the base, except that `parameters` and `set` are "
             "merged by name.",
             R"("push_20n.yaml")",
-            "Named numbers for expressions in this file. They may refer to each other, in any "
-            "order; `--set name=value` on the command line overrides them.",
+            "Named numbers for expressions in this file. Parameters may refer to each other, in "
+            "any order; `--set name=value` on the command line overrides them.",
             R"({"push_n": "2.3 * 9.81"})"});
   if constexpr (!Io::kResolved) {
     io("model", e.model, kNeeded,

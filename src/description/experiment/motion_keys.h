@@ -27,7 +27,7 @@ template <class Io, class Law>
 void TimeLawKeys(Io& io, Law& law, const char* speed, const char* amplitude) {
   io(speed, law.speed,
      "Speed over time as points [[time_s, speed], ...], linearly interpolated; the first and last "
-     "speed are held. One point is a constant speed.");
+     "speed are held. A single point defines a constant speed.");
   io(amplitude, law.amplitude,
      "Amplitude of a sine that is added to the displacement or angle: amplitude (sin(2 pi "
      "frequency_hz t + phase_rad) - "

@@ -59,7 +59,8 @@ void Keys(Io& io, Like<CpgGait> auto& c) {
   io("order", c.order,
      "Names of the cables with an oscillator. Default: all cables with an actuator, in the model's "
      "order.");
-  io("inverted", c.inverted, "Cables whose signal is the negative of their oscillator's.");
+  io("inverted", c.inverted,
+     "Cables with an inverted signal: the negative of the oscillator's signal.");
   io("feedback", c.feedback);
   io("groups", c.groups,
      "Weight and phase of every group of couplings. All groups of the robot are required.");

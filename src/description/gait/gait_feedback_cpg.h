@@ -45,8 +45,8 @@ template <class Io>
 void Keys(Io& io, Like<FeedbackCpgGait> auto& c) {
   io.Map("feedback_cpg", "feedback_cpg",
          "Oscillators with sensory feedback. One neural network computes feedback from each cable, "
-         "another one "
-         "from the direction of the experiment's goal. The feedback changes the frequency, "
+         "another network from the direction of the experiment's goal. The feedback changes the "
+         "frequency, "
          "amplitude and phase of each oscillator.");
   io("frequency_hz", c.frequency_hz, kNeeded, kAtStart, "Initial frequency of each oscillator.");
   io("convergence_per_s", c.convergence_per_s, Bound::kPositive,

@@ -33,8 +33,8 @@ void Keys(Io& io, Gait& g) {
             "Another gait file to inherit from, relative to this file's folder. Each key of this "
             "file replaces the whole key of the base, except that `parameters` are merged by name.",
             R"("hand_tuned_sine.yaml")",
-            "Named numbers for expressions in this file. They may refer to each other, in any "
-            "order.",
+            "Named numbers for expressions in this file. Parameters may refer to each other, in "
+            "any order.",
             R"({"amplitude_m_per_s": 0.06})"});
   io("drives", g.drives, kDrives, kLater,
      "Driven quantity, which sets the unit of amplitudes, offsets and tables. `velocity`: V0 of "

@@ -21,8 +21,7 @@ void Keys(Io& io, Like<SineWave> auto& w) {
   io(Driven("offset_m_per_s", "offset_m"), w.offset, "Constant offset.");
   io("phase_per_segment_rad", w.phase_per_segment_rad,
      "Phase added per segment toward the rear: not added for cables whose names end in _1, added "
-     "once for _2, "
-     "twice for _3. This makes a traveling wave on a spine of any length.");
+     "once for _2, twice for _3. This phase lag makes a traveling wave on a spine of any length.");
   io("frequency_hz", w.frequency_hz, Bound::kNonNegative,
      "Frequency of this wave. Default: `frequency_hz` of `sine`.");
 }

@@ -35,7 +35,7 @@ void MemberKeys(Io& io, Like<MemberDef> auto& m, MemberOf of) {
   io("expansion_per_k", m.expansion_per_k, LaterThan{0.0}, Bound::kAny,
      "Thermal strain per kelvin, for load cases with a change of temperature.");
   io("mass_kg", m.mass_kg, LaterThan{0.0}, Bound::kNonNegative,
-     "Mass of the member. Half of it is added to the body at each end, at the node.");
+     "Mass of the member. Half of this mass is added to the body at each end, at the node.");
   io("mass", m.mass, kMemberMasses, kLater,
      "Mass in modal analysis. `lumped`: half at each end, as in the simulation. `consistent`: "
      "distributed along the member, moving with its ends.");
@@ -54,7 +54,8 @@ void Keys(Io& io, Like<BarText> auto& b) {
       "bar", "builder.bar",
       "Elastic bar along a pair: tension or compression k (l - L) + b dl/dt along the line between "
       "its nodes, with the unstressed length L; no contact. A node with bars and cables only is a "
-      "point mass with half the mass of each of them. At most one of `prestress_n`, "
+      "point mass with half the mass of each of these bars and cables. At most one of "
+      "`prestress_n`, "
       "`rest_length_m` and "
       "`rest_length_ratio` sets L. Default: unstressed in the described pose.",
       R"({"young_pa": 70e9, "area_m2": 1e-4, "density_kg_per_m3": 2700})");

@@ -132,7 +132,8 @@ void Keys(Io& io, Like<PlacementText> auto& p) {
   io("part", p.part, kNeeded, "Name of the part.");
   io("name", p.name, kName, "Name of the placement. Default: the part's.");
   io("copies", p.copies, kInherited, Bound{.least = 1, .most = kMaxCopies},
-     "Number of copies. They are named name_0, name_1 ...; their nodes and pairs also have the "
+     "Number of copies. The copies are named name_0, name_1 ...; their nodes and pairs also have "
+     "the "
      "copy's number and `first`, `middle` or `last` as tags (a single copy is first and last).");
   io("at_m", p.at_m, "Position of the part's origin (copy 0).");
   io("rotate", p.rotate, "Rotation of the part (copy 0) about its origin.");
@@ -291,8 +292,9 @@ void Check(const MapReader& map, ConvexText& convex);
 
 template <class Io>
 void Keys(Io& io, Like<AnchorText> auto&) {
-  io.Map("anchor", "builder.anchor",
-         "Anchor that fixes a node and its body in the world. It has no keys: `anchor: {}`.");
+  io.Map(
+      "anchor", "builder.anchor",
+      "Anchor that fixes a node and its body in the world. An anchor has no keys: `anchor: {}`.");
 }
 
 template <class Io>
@@ -332,7 +334,8 @@ void Keys(Io& io, Like<ModelText> auto& m) {
        "Another model file to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("tetraspine3.yaml")",
-       "Named numbers for expressions in this file. They may refer to each other, in any order; an "
+       "Named numbers for expressions in this file. Parameters may refer to each other, in any "
+       "order; an "
        "experiment's `set` and `--set name=value` on the command line override them.",
        R"({"edge_m": 0.38, "height_m": "sqrt(3) / 2 * edge_m"})"});
   io("parts", m.parts_text, kName,

@@ -43,8 +43,8 @@ void MotorSupplyKeys(Io& io, Like<DcMotorDef> auto& m) {
      "Resistance of the driver's two conducting transistors.");
   io("supply", m.supply, kName,
      "Name of the power supply. Motors with the same name share one supply: the current of each "
-     "motor lowers the "
-     "voltage of all. Their `supply_voltage_v` and `supply_resistance_ohm` must be equal.");
+     "motor lowers the voltage of all these motors. They must have equal `supply_voltage_v` and "
+     "`supply_resistance_ohm`.");
   io("supply_voltage_v", m.supply_voltage_v, Bound::kPositive,
      "Voltage of the supply without load.");
   io("supply_resistance_ohm", m.supply_resistance_ohm, Bound::kNonNegative,

@@ -56,7 +56,8 @@ void Keys(Io& io, Like<CalibrationFileText> auto& s) {
        "Another calibration to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("first_calibration.yaml")",
-       "Named numbers for expressions in this file. They may refer to each other, in any order.",
+       "Named numbers for expressions in this file. Parameters may refer to each other, in any "
+       "order.",
        R"({"gain_n": "0.1567"})"});
   io("cables", s.cables, kNeeded, "Measured values, one entry per cable, in any order.");
 }

@@ -73,7 +73,8 @@ void Keys(Io& io, Like<CatalogueFileText> auto& s) {
        "Another catalogue to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("first_catalogue.yaml")",
-       "Named numbers for expressions in this file. They may refer to each other, in any order.",
+       "Named numbers for expressions in this file. Parameters may refer to each other, in any "
+       "order.",
        R"({"rpm": "2 * pi / 60"})"});
   io("factor", s.factor, Bound::kPositive,
      "Safety factor: smallest allowed ratio of rating to requirement.");

@@ -84,7 +84,7 @@ void Keys(Io& io, Like<FaultFileText> auto& s) {
        "Another fault script to inherit from, relative to this file's folder. Each key of this "
        "file replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("noisy_bus.yaml")",
-       "Named numbers for expressions in this file. They may refer to each other, in any "
+       "Named numbers for expressions in this file. Parameters may refer to each other, in any "
        "order.",
        R"({"begin_s": "0.5"})"});
   io("faults", s.faults, kNeeded, "Faults, in any order. Several may act at once.");

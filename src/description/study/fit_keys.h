@@ -62,7 +62,8 @@ void Keys(Io& io, Like<FitExperimentText> auto& e) {
      Example{R"("map.json")"});
   io("setpoints", e.setpoints,
      "Trace with one row per set point, at the time on the data's clock at which the set point was "
-     "commanded. Its optional column `experiment_s` contains the corresponding times on the "
+     "commanded. The optional column `experiment_s` of the trace contains the corresponding times "
+     "on the "
      "experiment's clock. Default of trace and column: the times of the set points in the "
      "experiment.",
      Example{R"("test0_setpoints.csv")"});
@@ -224,7 +225,8 @@ void Keys(Io& io, Like<FitSearchText> auto& s) {
   io.Map("search", "search", "Settings of the search for the best fit.",
          R"({"starts": 8, "step": 0.1})");
   io("starts", s.values.starts, Bound{.least = 1, .most = 1000},
-     "Number of starts: the first at the experiments' values, the others drawn from the priors.");
+     "Number of starts: the first start is at the experiments' values, the other starts are drawn "
+     "from the priors.");
   io("step", s.values.step, Bound{.least = 0.0, .most = 1.0, .above_least = true},
      "Longest finite difference step, in units of `scale`; it is shortened if halving it changes "
      "the derivative.");
@@ -307,7 +309,8 @@ void Keys(Io& io, Like<FitFileText> auto& f) {
        "Another fit file to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("camera.yaml")",
-       "Named numbers for expressions in this file. They may refer to each other, in any order; "
+       "Named numbers for expressions in this file. Parameters may refer to each other, in any "
+       "order; "
        "`--set name=value` on the command line overrides them and parameters of the experiments.",
        R"({"pose_sd_m": "0.0008"})"});
   io("experiments", f.experiments, kNeeded,

@@ -55,8 +55,8 @@ struct ObjectiveText : ObjectiveSpec {
 template <class Io>
 void Keys(Io& io, Like<ObjectiveText> auto& o) {
   io.Map("objective", "objective",
-         "Score of a world; a higher score is better. It is computed during the run, without a "
-         "trace.");
+         "Score of a world; a higher score is better. The score is computed during the run, "
+         "without a trace.");
   io("measure", o.measure, kMeasures, kNeeded,
      "`distance`: horizontal displacement of the center of mass [m]. `heading`: its component "
      "along `direction`. `distance_per_energy`: distance divided by the motors' work, tension "
@@ -69,10 +69,9 @@ void Check(const MapReader& map, ObjectiveText& objective);
 
 template <class Io>
 void Keys(Io& io, Like<PerturbationSpec> auto& w) {
-  io.Map(
-      "worlds", "worlds",
-      "Domain randomization: worlds that score each candidate. The first world is the unmodified "
-      "experiment; the others have uniformly distributed factors and starts.");
+  io.Map("worlds", "worlds",
+         "Domain randomization: worlds that score each candidate. The first world is the "
+         "unmodified experiment; the other worlds have uniformly distributed factors and starts.");
   io("count", w.worlds, kNeeded, Bound{.least = 1, .most = 1000}, "Number of worlds.");
   VariationKeys(io, w);
   io("redraw", w.redraw,
@@ -103,7 +102,7 @@ void Keys(Io& io, Like<SearchText> auto& s) {
      "Number of candidates. You can later increase the number of the last search.");
   io("batch", s.batch, Bound{.least = 1, .most = 100'000},
      "Number of candidates evaluated in parallel before the search uses their scores; for `cma_es` "
-     "the population, at least 4. Results depend on it.");
+     "the population, at least 4. Results depend on this number.");
   io("deviation", s.deviation,
      Bound{.least = 0.0, .most = 10.0, .above_least = true, .hint = "in widths of the bounds"},
      "Standard deviation of the first steps for `hill_climbing` (default 0.1) and `cma_es` "
@@ -113,8 +112,8 @@ void Keys(Io& io, Like<SearchText> auto& s) {
      "the deviation is constant, as in NTRT.");
   io("algorithm", s.algorithm, NloptChoices(), "Algorithm for `nlopt`.");
   io("starts", s.starts, Bound{.least = 1, .most = 1000},
-     "Number of parallel runs for `nlopt`. The first starts from the best candidate, the others at "
-     "random points; a converged run restarts elsewhere.");
+     "Number of parallel runs for `nlopt`. The first run starts from the best candidate, the other "
+     "runs at random points; a converged run restarts at another random point.");
   io("initial_step", s.initial_step,
      Bound{.least = 0.0, .most = 0.5, .above_least = true, .hint = "half the bounds"},
      "First step for `nlopt`, as a fraction of the distance between the bounds.");
@@ -148,7 +147,7 @@ void Keys(Io& io, Like<StudyFileText> auto& s) {
        "Another study file to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` and `set` are merged by name.",
        R"("sidewinder3.yaml")",
-       "Named numbers for expressions in this file. They may refer to each other, in any "
+       "Named numbers for expressions in this file. Parameters may refer to each other, in any "
        "order; `--set name=value` on the command line overrides them.",
        R"({"fastest_hz": "2"})"});
   io("experiment", s.experiment, kNeeded,
