@@ -120,9 +120,9 @@ def page(taut):
         "version": taut("--version").split()[-1], "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),
         "noise": f"{NOISE_N:g}", "rate": str(RATE_HZ), "begin": f"{BEGIN_S:g}",
         "fast": f"{100 * DRAGS['first']:g}", "slow": f"{100 * DRAGS['slow']:g}",
-        "grounds": table(["ground", "coefficient", "scale over weight", "estimate", "standard error", "verdict on the fit", "truth"],
+        "grounds": table(["ground", "coefficient", "scale over weight", "estimate", "standard error", "verdict on the fit", "true value"],
                          rows),
-        "hands": table(["ground", "drag", "speed of the hand [mm/s]", "standard error", "truth", "zero offset of the scale [N]",
-                        "standard error", "truth"], hands),
+        "hands": table(["ground", "drag", "speed of the hand [mm/s]", "standard error", "true value", "zero offset of the scale [N]",
+                        "standard error", "true value"], hands),
         "within": str(sum(abs(x) <= 2 for x in offs)), "numbers": str(len(offs)),
     })

@@ -129,15 +129,16 @@ def cable_rows(gait, ntrt, its, own):
 
 
 def means_table(rows):
-    head = ["cable", "mean: NTRT [N]", "NTRT's laws [N]", "taut's own laws [N]", "p-p: NTRT [N]", "NTRT's laws [N]",
-            "taut's own laws [N]"]
+    head = ["cable", "mean: NTRT [N]", "mean: NTRT's laws [N]", "mean: taut's own laws [N]", "p-p: NTRT [N]",
+            "p-p: NTRT's laws [N]", "p-p: taut's own laws [N]"]
     return table(head, [[plain(cable), *(f"{mean(wave):.3f}" for wave in waves),
                          *(f"{swing(wave):.3f}" for wave in waves)] for cable, waves, _, _ in rows])
 
 
 def lines_table(rows):
-    head = ["cable", "frequency [Hz]: NTRT", "NTRT's laws", "taut's own laws", "amplitude [N]: NTRT", "NTRT's laws",
-            "taut's own laws", "phase relative to NTRT [degrees]: NTRT's laws", "taut's own laws"]
+    head = ["cable", "frequency [Hz]: NTRT", "frequency [Hz]: NTRT's laws", "frequency [Hz]: taut's own laws",
+            "amplitude [N]: NTRT", "amplitude [N]: NTRT's laws", "amplitude [N]: taut's own laws",
+            "phase relative to NTRT [degrees]: NTRT's laws", "phase relative to NTRT [degrees]: taut's own laws"]
     return table(head, [[plain(cable), *(f"{line[0]:.3f}" for line in lines),
                          *(f"{line[1]:.3f}" for line in lines), *(f"{phase:+.1f}" for phase in phases)]
                         for cable, _, lines, phases in rows])
@@ -147,7 +148,8 @@ def shapes_table(rows, fundamental_hz):
     """Formats harmonics of the tension in % of the first, and the remainder after subtraction of a sine or a
     triangle."""
     head = ["cable", *(f"harmonic {n} [%]: {who}" for n in (2, 3, 5) for who in ("NTRT", "taut's own laws")),
-            "deviation from a sine [%]: NTRT", "taut's own laws", "from a triangle [%]: NTRT", "taut's own laws"]
+            "deviation from a sine [%]: NTRT", "deviation from a sine [%]: taut's own laws",
+            "deviation from a triangle [%]: NTRT", "deviation from a triangle [%]: taut's own laws"]
     out = []
     for cable, waves, _, _ in rows:
         spectra = [harmonics(waves[pick], ROW_S, fundamental_hz, 7) for pick in (0, 2)]
@@ -158,7 +160,7 @@ def shapes_table(rows, fundamental_hz):
 
 
 def paths_table(sources):
-    head = ["time [s]"] + [f"{what}: {who}" for what in ("forward [cm]", "left [cm]", "turned [degrees]")
+    head = ["time [s]"] + [f"{what}: {who}" for what in ("forward [cm]", "left [cm]", "rotation [degrees]")
                       for who in ("NTRT", "NTRT's laws", "taut's own laws")]
     out = []
     for time_s in TIMES_S:
@@ -236,7 +238,7 @@ def laws_table(gait, ntrt, runs):
                     f"{100 * worst / gait.system_max_n:.2f} %", *(f"{cm:.2f}" for cm in far),
                     f"{run.heading(TO_S) - run.heading(0):+.1f}"])
     return table(["run", "largest tension [N]", "difference from NTRT", "largest difference of a mean from NTRT",
-                  "distance in 20 s [cm]", "in 60 s [cm]", "turned [degrees]"], out)
+                  "distance in 20 s [cm]", "distance in 60 s [cm]", "rotation [degrees]"], out)
 
 
 def saturation_table(run_of):

@@ -85,8 +85,8 @@ def ways_table(gait, walks):
                      f"{min(far):.2f} to {max(far):.2f}",
                      f"{10 * statistics.mean(100 * run.speed_m_per_s() for run in runs):.2f}",
                      f"{runs[0].work_j:.0f}", f"{runs[0].loss_j:.0f}"])
-    return table(["eyelets", "distance in 20 s [cm]", "in 60 s [cm]", f"in 60 s, range of {STARTS} starts [cm]",
-                  "speed from 30 to 60 s [mm/s]", "winding work [J]", "lost in eyelets [J]"], rows)
+    return table(["eyelets", "distance in 20 s [cm]", "distance in 60 s [cm]", f"distance in 60 s, range of {STARTS} starts [cm]",
+                  "speed from 30 to 60 s [mm/s]", "winding work [J]", "energy lost in eyelets [J]"], rows)
 
 
 def tensions_table(gait, walks):
@@ -110,7 +110,7 @@ def ground_table(folder, results):
             cells.append(f"{100 * Walk(folder / run.name, results[run.name]).distance_m(TO_S):.2f}")
         rows.append(cells)
     return table(["friction of the ground (product of both coefficients)", "distance in 60 s [cm], eyelets without friction",
-                  "in 60 s [cm], eyelets with mu 0.2"], rows)
+                  "distance in 60 s [cm], eyelets with mu 0.2"], rows)
 
 
 def difference_mm(walks, gait):

@@ -138,8 +138,8 @@ def gives_table(runs):
         rows.append([way, str(speed), f"{run.outer_n:.0f}", f"{run.inner_n:.0f}",
                      f"{run.outer_slack} of 24", f"{run.inner_slack} of 12", f"{run.push_n:.0f}",
                      f"{100 * run.push_n / euler_n():.0f}", run.touches()])
-    return table(["lands on", "impact speed [m/s]", "largest tension, robot's cables [N]", "payload cables [N]",
-                  "slack at some time, robot's cables", "payload cables", "largest compression of a strut [N]",
+    return table(["lands on", "impact speed [m/s]", "largest tension, robot's cables [N]", "largest tension, payload cables [N]",
+                  "robot's cables slack at some time", "payload cables slack at some time", "largest compression of a strut [N]",
                   "% of Euler's load", "contacts besides strut ends and ground"], rows)
 
 

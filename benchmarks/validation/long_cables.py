@@ -66,9 +66,9 @@ def kinds_table(runs):
                     f"{first.work_j:.0f}", f"{first.net_j:.0f}", f"{first.work_j / first.way_m:.0f}",
                     f"{first.loss_j:.1f}" if first.loss_j else ""])
     return table(["spine", "motors", "displacement, first start [m]", f"displacement, {STARTS} starts: minimum, median, maximum [m]", "path [m]",
-                  "tension of outer cables: mean, largest [N]", "of inner cables: mean, largest [N]",
+                  "tension of outer cables: mean, largest [N]", "tension of inner cables: mean, largest [N]",
                   "winding work [J]", "winding work minus returned work [J]", "winding work per meter [J/m]",
-                  "lost in eyelets [J]"], out)
+                  "energy lost in eyelets [J]"], out)
 
 
 def page(taut):

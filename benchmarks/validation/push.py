@@ -219,8 +219,8 @@ def moved_table(ntrt, folder):
         cells = [100 * (last[f"{segment}_{axis}_m"] - first[f"{segment}_{axis}_m"]) for axis in "zx"]
         cells += [100 * moved[f"body/{segment}/position_{axis}_m"] for moved in (its, own) for axis in "xy"]
         rows.append([plain(segment), *(f"{cell:+.1f}" for cell in cells)])
-    return table(["segment", "NTRT: forward", "left", "taut, NTRT's laws: forward", "left", "taut, own laws: forward",
-                  "left"], rows)
+    return table(["segment", "NTRT: forward", "NTRT: left", "taut, NTRT's laws: forward", "taut, NTRT's laws: left",
+                  "taut, own laws: forward", "taut, own laws: left"], rows)
 
 
 def maxima_table(robot, ntrt, result, after_start):

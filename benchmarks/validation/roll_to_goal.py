@@ -87,7 +87,7 @@ def row(name, runs):
 
 
 HEAD = ["terrain", "arrived within 0.5 m", "time [s]: first, median, 90 %, last", "arrived within 0.25 m",
-        "time [s]: first, median, 90 %, last", "smallest distance from the goal [m], median", "distance from the goal after 60 s [m], median", "after 60 s [m], maximum", "runs with a warning"]
+        "time [s]: first, median, 90 %, last", "smallest distance from the goal [m], median", "distance from the goal after 60 s [m], median", "distance from the goal after 60 s [m], maximum", "runs with a warning"]
 
 
 def far_row(name, runs):
@@ -103,7 +103,7 @@ def far_row(name, runs):
             middle(lambda run: run.power_w, 0)]
 
 
-FAR_HEAD = ["model", "distance [m]", "path [m]", "turns", "path per turn [m]", "sliding of ends [% of path]",
+FAR_HEAD = ["model", "distance [m]", "path [m]", "turns", "path per turn [m]", "sliding of strut ends [% of path]",
             "largest tension [N]", "winding power [W]"]
 
 

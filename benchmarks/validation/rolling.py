@@ -121,7 +121,7 @@ def moving_row(text, runs, way):
 
 
 MOVING = ["", "distance, first start [m]", "distance: minimum, median, maximum [m]", "path [m]", "turns, first start",
-          "turns: minimum, median, maximum", "touchdowns of ends", "sliding of ends [% of path]", "largest tension [N]",
+          "turns: minimum, median, maximum", "touchdowns of strut ends", "sliding of strut ends [% of path]", "largest tension [N]",
           "winding power [W]"]
 
 

@@ -154,7 +154,7 @@ def page(taut):
                         "largest error [standard errors]"], [row(name, twins, found) for name in WHAT]),
         "within": f"{sum(abs(x) <= 2 for x in offs)}", "share": f"{100 * sum(abs(x) <= 2 for x in offs) / len(offs):.0f}",
         "good": f"{sum(not fit.judgements() for fit in found)}",
-        "one": table(["parameter", "nominal", "estimate", "standard error", "verdict", "truth"], of_one),
+        "one": table(["parameter", "nominal", "estimate", "standard error", "verdict", "true value"], of_one),
         "named": f"{sum(map(alias_is_named, aliased))}",
         "sentence": aliased[0].parameters["ground_friction"]["sentence"],
         "lost": str(len(lost)), "weight_n": f"{WEIGHT_N:g}",

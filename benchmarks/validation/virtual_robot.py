@@ -114,8 +114,9 @@ def causes_table(causes, names, beside, path_of):
     """Formats one row per cause: the difference, for gaits also its composition."""
     head, rows = ["change"], []
     for name in names:
-        head += ["push: rms [N]", "largest [N]"] if name == PUSH else [
-            f"{'sine' if name == SINE else 'learned gait'}: rms [N]", "difference of means [N]", "swing [%]", "delay [ms]"]
+        gait = "sine" if name == SINE else "learned gait"
+        head += ["push: rms [N]", "push: largest [N]"] if name == PUSH else [
+            f"{gait}: rms [N]", f"{gait}: difference of means [N]", f"{gait}: swing [%]", f"{gait}: delay [ms]"]
     for cause in causes:
         row = [cause.title]
         for name in names:
@@ -179,7 +180,7 @@ def times_table(boards):
         rows.append([name, f"{figures['tick_mean_us']:.0f}", f"{figures['tick_longest_us']:.0f}",
                      str(figures["late_ticks"]), f"{figures['cycle_mean_ms']:.2f}",
                      f"{figures['cycle_longest_ms']:.2f}", str(figures["bad_frames"])])
-    return table(["experiment", "board tick, mean [us]", "longest [us]", "late ticks", "bus cycle, mean [ms]", "longest [ms]",
+    return table(["experiment", "board tick, mean [us]", "longest tick [us]", "late ticks", "bus cycle, mean [ms]", "longest cycle [ms]",
                   "bad frames"], rows)
 
 

@@ -309,7 +309,7 @@ def page(taut):
         "table": table(["parameter", "rms error before the fit", "rms error after", "rms error after, relative",
                         f"within two standard errors, of {len(stand.motors)}", "largest error [standard errors]"], rows),
         "within": str(sum(abs(x) <= 2 for x in everything)), "numbers": str(len(everything)),
-        "held": table(["motor", "tension: untuned [N]", "fitted [N]", "duty: untuned", "fitted", "verdict on the fit"], held),
+        "held": table(["motor", "tension: untuned [N]", "tension: fitted [N]", "duty: untuned", "duty: fitted", "verdict on the fit"], held),
         "more": table(["parameter", "estimate", "standard error", "verdict", "confounded with", "no longer estimated"], more),
         "all": table(["motor", "weight [kg]", *(what for what, _ in WHAT.values())],
                      [motor_row(stand, m, fit) for m, fit in found.items()]),

@@ -76,7 +76,7 @@ def walls(taut, kind, results):
                      f"{min(times):.1f} to {max(times):.1f}" if times else "",
                      f"{outcomes[0][0]:.1f}" if outcomes[0][0] is not None else "never",
                      f"{min(stuck)} to {max(stuck)}" if stuck else "", str(warned)])
-    return table(["wall height [cm]", "starts that cross it", "time [s]", "unchanged experiment: time [s]",
+    return table(["wall height [cm]", "starts that cross the wall", "time [s]", "unchanged experiment: time [s]",
                   "segments behind the wall at the end, if not crossed", "runs with a warning"], rows), highest
 
 
