@@ -194,7 +194,7 @@ const SceneEntry kStringOfBeads("joint steps", "Beads on a string of distance jo
 const SceneEntry kOffTheAxis("joint steps", "Body with its center of mass close to the hinge axis",
                              "h w = 2, w^2 = m g r / (I + m r^2)", OffTheAxis);
 const SceneEntry kNoFalseAlarm("joint steps", "Light bodies on levers",
-                               "slow motions need no report", NoFalseAlarm);
+                               "slow motions set no status bit", NoFalseAlarm);
 const SceneEntry kKapitza("joint steps", "Kapitza's pendulum near its threshold", "(a W)^2 = 2 g l",
                           Kapitza);
 

@@ -331,7 +331,7 @@ void ConeStop(Report& report) {
 const SceneEntry kSpinningBodyOnRope("joint stops", "Body that spins at 200 rad/s on a rope",
                                      "conservation of energy", SpinningBodyOnRope);
 const SceneEntry kSwingingRope("joint stops", "Rope with a mass that swings for a minute",
-                               "length of the rope; no energy from nothing", SwingingRope);
+                               "length of the rope; energy does not increase", SwingingRope);
 const SceneEntry kSlackRope("joint stops", "Rope that goes slack and snatches",
                             "circle and parabola; Newton's law at the snatch", SlackRope);
 const SceneEntry kCircleInCone("joint stops", "Rod that goes round along the cone of a ball joint",
@@ -341,10 +341,11 @@ const SceneEntry kPressedElbow("joint stops", "Elbow pressed on its stop swings 
 const SceneEntry kFreeElbow("joint stops", "Elbow pressed on its stop tumbles in free space",
                             "momenta and energy", FreeElbow);
 const SceneEntry kBouncingSlider("joint stops", "Slider that falls on its stop",
-                                 "height e^2 of the fall", BouncingSlider);
+                                 "height after the rebound: e^2 of the height of the fall",
+                                 BouncingSlider);
 const SceneEntry kHingeStop("joint stops", "Rod that falls on the stop of its hinge",
-                            "energy e^2 of the fall", HingeStop);
+                            "energy after the rebound: e^2 of the energy of the fall", HingeStop);
 const SceneEntry kConeStop("joint stops", "Rod that is thrown against its cone",
-                           "energy e^2 of the impact", ConeStop);
+                           "energy after the rebound: e^2 of the energy of the impact", ConeStop);
 }  // namespace
 }  // namespace taut::mechanics

@@ -336,18 +336,20 @@ void StiffCablesOnJoints(Report& report) {
 }
 
 const SceneEntry kStiffCables("joints", "Stiff cables between jointed rods",
-                              "energy is not created, angular momentum is kept",
+                              "energy does not increase, angular momentum is conserved",
                               StiffCablesOnJoints);
 const SceneEntry kTumblingFrames("joints", "Frames of rods that tumble",
                                  "energy and angular momentum", TumblingFrames);
 const SceneEntry kRedundantRows("joints", "Rods with redundant rows",
-                                "energy; symmetry of the lists", RedundantRows);
+                                "energy; independence of the order of bodies and joints",
+                                RedundantRows);
 const SceneEntry kNets("joints", "Nets of rods, pinned at their corners",
-                       "energy; symmetry of the lists", Nets);
+                       "energy; independence of the order of bodies and joints", Nets);
 const SceneEntry kCardanJoints("joints", "Cardan joint with redundant hinges",
                                "ratio of the speeds by the closed form; energy", CardanJoints);
 const SceneEntry kStraightChains("joints", "Straight chains pinned at both ends",
-                                 "energy; symmetry of the lists", StraightChains);
+                                 "energy; independence of the order of bodies and joints",
+                                 StraightChains);
 
 }  // namespace
 }  // namespace taut::mechanics

@@ -223,7 +223,8 @@ void TippingOverABorder(Report& report) {
     }
   }
   // Energy gain of a body of 1 kg that falls for a step before its contact is detected.
-  report.AtMost("sum of all rises of energy, body of 1 kg", "J", rise_j, kG * kG * kStepS * kStepS);
+  report.AtMost("sum of all energy increases, body of 1 kg", "J", rise_j,
+                kG * kG * kStepS * kStepS);
 }
 
 /// A body pushed along a floor against a higher adjacent piece; the contacts at the floor must
@@ -287,7 +288,7 @@ const SceneEntry kPiecesInCorners("seams", "T-junctions, corners of four, turned
 const SceneEntry kKinks("seams", "Level ground that meets a slope", "the same ground as one mesh",
                         Kinks);
 const SceneEntry kTippingOverABorder("seams", "Bodies that slide and tip over a border",
-                                     "energy does not rise", TippingOverABorder);
+                                     "energy does not increase", TippingOverABorder);
 const SceneEntry kWallBesideAFloor("seams", "A floor beside a higher piece", "statics",
                                    WallBesideAFloor);
 const SceneEntry kFriction("seams", "Rolling and sliding over a seam", "a plane", Friction);

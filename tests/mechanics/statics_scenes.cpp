@@ -154,7 +154,7 @@ void CablesInARow(Report& report) {
   // Without prestress nothing resists these motions: they are mechanisms, not rigid motions.
   const ModelDef straight = Row(2, true, 1, 1000, 1);
   const Modes modes = FindModes(straight);
-  report.Near("bars without prestress: rigid modes", "1", modes.rigid, 0, 0);
+  report.Near("bars without prestress: rigid motions", "1", modes.rigid, 0, 0);
   report.Near("bars without prestress: mechanisms", "1", modes.mechanisms, 4, 0);
   report.Near("bars without prestress: least stiffness", "N/m", LeastStiffnessOf(straight), 0, 0);
 }
@@ -188,10 +188,10 @@ void FlatNet(Report& report) {
               EnergyOracle(there).LeastStiffness(0), 1e-6);
   const ForceAnalysis found = AnalyseForces(tuned);
   const std::vector<double>& by_prestress = found.mechanism_stiffness;
-  report.Near("mechanisms that prestress stiffens", "1", static_cast<double>(by_prestress.size()),
-              5, 0);
+  report.Near("mechanisms with positive stiffness due to prestress", "1",
+              static_cast<double>(by_prestress.size()), 5, 0);
   // In units of the largest density, 10 N/m: 1, 2, 2, 3 out of the plane.
-  report.Near("least of them over the largest density", "1",
+  report.Near("least stiffness of the mechanisms, relative to the largest force density", "1",
               by_prestress.empty() ? 0 : by_prestress[0], 1, 1e-9);
 }
 const SceneEntry kFlatNet("statics", "Flat net of four points and four anchors",

@@ -162,7 +162,7 @@ void Drops(Report& report) {
 }
 
 const SceneEntry kDrops("stiff cables", "Six-strut that falls, straight and tumbling",
-                        "energy does not rise; it comes to stand", Drops);
+                        "energy does not increase; the robot comes to rest", Drops);
 
 /// Stretched by a tenth, without gravity. `kicked`: random velocities of the rods; otherwise
 /// parallel rods start too far apart.
@@ -250,7 +250,7 @@ void LightNodes(Report& report) {
 }
 
 const SceneEntry kLightNodes("stiff cables", "Light node that comes to hang on a damped cable",
-                             "its weight", LightNodes);
+                             "weight of the node", LightNodes);
 
 /// Returns three bodies in flight, on one cable through an eyelet and on another between two of
 /// them.
@@ -333,11 +333,11 @@ void Rebound(Report& report) {
     gained = std::max(gained, EnergyOf(world) / start - 1);
   }
   report.AtMost("restitution 0.7: gain of energy", "1", gained, 1e-6);
-  report.AtMost("restitution 0.7: status", "1", world.Status(0).bits, 0);
+  report.AtMost("restitution 0.7: status bits", "1", world.Status(0).bits, 0);
 }
 
 const SceneEntry kRebound("stiff cables", "Six-strut of elastic rods that rebounds",
-                          "energy does not rise", Rebound);
+                          "energy does not increase", Rebound);
 
 /// Thresholds of the cable schemes: h^2 K = 0.1; with dampers h^2 K = 4; and unsupported elements.
 void Schemes(Report& report) {
@@ -360,11 +360,12 @@ void Schemes(Report& report) {
               count(1e6, 20, 1e-3, CableScheme::kImplicitDamped), 24, 0);
   report.Near("1e4 N/m with dampers, 1 ms: implicit", "1",
               count(1e4, 20, 1e-3, CableScheme::kImplicit), 24, 0);
-  report.Near("one of them looks for terrain: explicit, in substeps", "1",
+  report.Near("one cable touches terrain: explicit, in substeps", "1",
               count(1e6, 20, 1e-3, CableScheme::kExplicit, true), 24, 0);
 }
 
-const SceneEntry kSchemes("stiff cables", "Scheme of a six-strut's cables", "the rule", Schemes);
+const SceneEntry kSchemes("stiff cables", "Scheme of a six-strut's cables",
+                          "rule of theory/cables.md, section 3", Schemes);
 
 }  // namespace
 }  // namespace taut::mechanics

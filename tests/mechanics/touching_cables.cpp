@@ -105,7 +105,7 @@ void IntoFreeRods(Report& report) {
 }
 
 const SceneEntry kIntoFreeRods("touching cables", "Cable that flies into free rods",
-                               "energy is not created, momentum is kept", IntoFreeRods);
+                               "energy does not increase, momentum is conserved", IntoFreeRods);
 
 }  // namespace
 }  // namespace taut::mechanics
