@@ -49,10 +49,9 @@ void Keys(Io& io, Like<CpgGait> auto& c) {
      "Longest step of the network's integrator; the gait's period is divided into equal steps. "
      "Independent of the simulation step.");
   io("symmetry", c.symmetry, kSymmetries,
-     "Rule for groups of couplings with common weight and phase. `segments`: couplings between the "
-     "same two roles (names "
-     "of cables without their number) and with the same position of the neighbor: at the same "
-     "joint, one joint ahead, or one joint behind. "
+     "Rule for groups of couplings with common weight and phase. `segments`: a group contains the "
+     "couplings between two roles (names of cables without their number) with one relative "
+     "position of the neighbor: at the same joint, one joint ahead, or one joint behind. "
      "`index`: NTRT's rule, computed from the positions in `order`. `none`: every coupling has "
      "separate "
      "values.");

@@ -146,9 +146,9 @@ void Keys(Io& io, Like<PlacementText> auto& p) {
      "Initial angular velocity of each whole copy about its center of mass, in the world frame.");
   io("tags", p.tags, "Additional tags of all nodes and pairs of the placement.");
   io("connect", p.connect_text,
-     "Pairs from each copy to the next: the first node is on copy i, the second on copy i + 1 (for "
-     "a cable with three "
-     "nodes, the third on copy i + 2). Named pairs become name_1, name_2 ...; they have their "
+     "Pairs from each copy to the next. The first node is on copy i, the second on copy i + 1; for "
+     "a cable with three nodes, the third is on copy i + 2. Named pairs become name_1, name_2 ...; "
+     "they have their "
      "number "
      "and `first`, `middle` or `last` as tags.");
   io("ring", p.ring, "Whether the last copy is also connected to the first.");

@@ -29,8 +29,7 @@ void MotorFigureKeys(Io& io, Like<DcMotorDef> auto& m) {
   io("gear_efficiency", m.gear_efficiency, kEfficiency,
      "Share of the motor's power that reaches the cable while winding in. If the cable drives the "
      "motor, the gear loses as much power as in the other direction: the share is 2 - 1 / "
-     "efficiency, and at efficiencies up to 0.5 "
-     "the gear locks. Assumed.");
+     "efficiency. At efficiencies up to 0.5, the gear locks. Assumed.");
   io("backlash_rad", m.backlash_rad, Bound::kNonNegative,
      "Free rotation of the spool between two flanks of the gear.");
   io("spool_radius_m", m.spool_radius_m, Bound::kPositive,
