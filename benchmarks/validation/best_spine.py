@@ -16,7 +16,7 @@ TESTS = (0, 2, 4, 6, 8)
 AFTER_S = (2.1, 3.4)         # interval after a set point in which its pose is held
 UP = (40, 118)               # set points of the upward motion; the record of the last pose is incomplete
 X, Z, TURN = "node/v.o/position_x_m", "node/v.o/position_z_m", "body/v/rotation_y_rad"
-UNITS = {X: 1e3, Z: 1e3, TURN: 180 / math.pi}   # mm, mm, degrees
+UNITS = {X: 1e3, Z: 1e3, TURN: 180 / math.pi}   # factors from m, m, rad to mm, mm, degrees
 SD = {X: 0.00074, Z: 0.0008, TURN: math.radians(0.62)}  # spread of the five tests
 CAMERA = [f"{{channel: {X}, offset: {{sd: 0.002}}}}", f"{{channel: {Z}, offset: {{sd: 0.002}}}}",
           f"{{channel: {TURN}, offset: {{sd: 0.01}}}}"]
@@ -44,7 +44,7 @@ class Data:
             poses = fits.rows_of(DATA / f"test{test}_measured_pose.csv", 2)
             rows, last = [], -math.inf
             for time_ms, x_cm, y_cm, turn in poses:
-                if time_ms > last:   # a camera row may occur twice
+                if time_ms > last:   # skips a camera row that occurs twice
                     rows.append([time_ms * 1e-3, x_cm * 1e-2, y_cm * 1e-2, -math.radians(turn)])
                     last = time_ms
             head = ["time_s", X, Z, TURN]

@@ -22,7 +22,7 @@ SHARE = ROOT / "share"
 LANES = 8
 READ_S = 0.02
 FROM_S = 5.0  # statistics of tensions exclude the start
-HOLD_S = 2.0  # before T0 and L0 are captured
+HOLD_S = 2.0  # duration of position control before T0 and L0 are captured
 
 # Experiments, and factors on the amplitude. On the robot, the amplitudes of the sine waves were ten times those of the
 # simulator (Mirletz et al. 2015, section V).

@@ -36,7 +36,7 @@ record: {{rate_hz: 1, channels: ['body/segment_5/position_x_m', 'body/segment_5/
 def trials(taut, study):
     """Returns each world's decrease of the distance to the goal [m], ascending, without the first, unrandomized one."""
     folder = taut.folder / study
-    shutil.rmtree(folder, ignore_errors=True)   # a changed gait is a different study
+    shutil.rmtree(folder, ignore_errors=True)   # a study with a changed gait is a different study
     taut("learn", f"studies/{study}.yaml", "--out", folder, "--quiet")
     with sqlite3.connect(folder / "study.sqlite") as log:
         rows = log.execute("SELECT score, energy_j, max_tension_n FROM world WHERE world > 0").fetchall()

@@ -26,8 +26,8 @@ RATE_HZ = 5000
 AFTER_S = 1.0        # duration of the run after the impact
 FELT_S, LOAD_S = 0.001, 0.010
 PAYLOAD_KG, RADIUS_M, BODIES = 4, 0.1, "abcdef"
-STIFFNESS_N_PER_M = 3152.36   # of the robot's cables
-TUBE_M, WALL_M, YOUNG_PA, STRUT_M = 0.050, 0.002, 69e9, 1.7   # of a realistic strut
+STIFFNESS_N_PER_M = 3152.36   # stiffness of the robot's cables
+TUBE_M, WALL_M, YOUNG_PA, STRUT_M = 0.050, 0.002, 69e9, 1.7   # diameter, wall, Young's modulus and length of a realistic strut
 
 
 def euler_n():

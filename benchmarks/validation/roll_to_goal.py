@@ -47,7 +47,7 @@ class Arrival(Run):
         self.from_goal = [math.hypot(at[0] - x, at[1] - y) for at in self.path]
 
     def _feet(self, rows, at, downhill):
-        if "node/a.l/position_x_m" in at:  # node names differ for another robot
+        if "node/a.l/position_x_m" in at:  # the nodes of the other robot have other names
             super()._feet(rows, at, downhill)
         else:
             self.feet, self.slide_m = 0, math.nan
@@ -136,7 +136,7 @@ def page(taut):
     frictions = [f"flat ground, friction {friction:g}" for friction in FRICTIONS]
     for name, friction in zip(frictions, FRICTIONS):
         add(name, "roll_to_goal", {"ground_friction": friction})
-    model = f"model: ../../../../share/{OTHER}\nstart: settled_floating\n"   # relative to the run's folder
+    model = f"model: ../../../../share/{OTHER}\nstart: settled_floating\n"   # path relative to the run's folder
     add("six_strut", "roll_to_goal_six_strut", {})
     add("six_strut_hills", "roll_to_goal_hills", {"drop_m": "0.02 * times"}, keys=model)
     add("six_strut_far", "roll_to_goal_six_strut", {"goal_m": 100}, FAR, rate_hz=50,

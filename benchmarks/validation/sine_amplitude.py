@@ -12,9 +12,9 @@ from validation.runs import ROOT, Variant, fill, keep_picture, replaced, table, 
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 EXPERIMENT, GAIT, MODEL = "sine_hand_tuned", "gaits/hand_tuned_sine.yaml", "models/tetraspine3.yaml"
-FACTORS = (1, 2, 3, 5, 7, 10)                   # 10: the robot's amplitudes
+FACTORS = (1, 2, 3, 5, 7, 10)                   # factors on the gait's amplitudes; 10: the robot's
 FRICTIONS = (0.075, 0.15, 0.3, 0.5, 0.8, 1.2)   # effective coefficient of a segment on the ground; 0.075: NTRT's
-ROBOT_FRICTION = 0.15                           # multiplied by the ground's coefficient
+ROBOT_FRICTION = 0.15                           # coefficient of the robot, multiplied by the ground's coefficient
 OTHERS = (           # further experiments: friction of the robot, effective coefficient on the ground
     ("NTRT's laws", EXPERIMENT + "_ntrt", 0.15, 0.075),
     ("0.5 between segments", EXPERIMENT, math.sqrt(0.5), 0.075),
@@ -26,7 +26,7 @@ OTHER_FACTORS = (5, 10)
 STARTS = ((0.0, 0.0), (0.02, 0.004), (-0.05, 0.01))   # initial roll [rad], and height above the floor [m]
 COARSE_S, FINE_S = 0.001, 0.0005
 DURATION_S = 40
-FORCE_N, LEAST_M, SPEED_M_PER_S = 50, 0.01, 0.07   # limits of a motor
+FORCE_N, LEAST_M, SPEED_M_PER_S = 50, 0.01, 0.07   # limits of a motor: force, shortest rest length, speed
 RATE_HZ = 25
 GAP_EVERY = 5        # rows
 EDGE_M, RADIUS_M = 0.38, 0.003175
@@ -34,7 +34,7 @@ TIP_Z_M = EDGE_M / 2 * math.tan(math.pi / 6)
 NODES = ((0, -EDGE_M / 2, 0), (0, EDGE_M / 2, 0), (0, 0, math.sqrt(3) / 2 * EDGE_M), (0.25, 0, TIP_Z_M))
 FRONT_M, SPACING_M = (0.77, 0, 0.005), 0.23     # origin of the node coordinates of segment 0
 SEGMENTS = 3
-START_M = 0.21       # between centers of mass
+START_M = 0.21       # distance of neighboring centers of mass at the start
 TOUCH_M = 0.0002
 
 
@@ -113,7 +113,7 @@ class Outcome:
         # Orientations are relative to the start, which is rolled; so are the nodes and the upward direction.
         roll = (math.cos(roll_rad / 2), math.sin(roll_rad / 2), 0, 0)
         upright = turned(roll, (0, 0, 1))
-        levers = []   # of the nodes, relative to the center of mass
+        levers = []   # positions of the nodes, relative to the center of mass
         for i, (at, _) in enumerate(pose[0]):
             middle = minus(at, (0, 0, lift_m))
             front = (FRONT_M[0] - i * SPACING_M, *FRONT_M[1:])

@@ -26,7 +26,7 @@ ESTIMATE = ["{parameter: stiffness_n_per_m, low: 100, high: 500, scale: 12}",
             "{clock: data, delay_s: {low: 0, high: 0.2, start: 0.05, scale: 0.02}}"]
 DAMPING = "{parameter: damping_n_s_per_m, low: 1, high: 100, scale: 4}"
 ALIAS = "{parameter: friction, low: 0.01, high: 1, scale: 0.03}"  # coefficient of the rods; only its product with the ground's has an effect
-NOISE = {"tension_n": 0.2, "position_m": 0.001, "scale_n": 0.05}  # sd of a row
+NOISE = {"tension_n": 0.2, "position_m": 0.001, "scale_n": 0.05}  # standard deviation of the noise of a row
 
 
 def experiment(folder):

@@ -16,7 +16,7 @@ LENGTH_M, LIFT_M = 0.9, 0.05           # cable length from weight to motor; heig
 DUTIES = {"half": 0.5, "most": 0.8, "held_out": 0.65}   # limits of the duty, one log each
 BEGIN_S, CYCLE_S = 0.3, 0.01
 FILTER_S = 0.004                       # delay of a tension: a low pass at 1 kHz with factor 0.2
-G, VOLT, OHM, TORQUE_CONSTANT, M_PER_RAD = 9.81, 12, 20.25, 0.0115, 0.00517 / 76   # from data sheets and the gear
+G, VOLT, OHM, TORQUE_CONSTANT, M_PER_RAD = 9.81, 12, 20.25, 0.0115, 0.00517 / 76   # values from data sheets; gear 76:1
 NOMINAL = {"stiffness_n_per_m": 229.16, "friction_n_m": 8e-5, "efficiency": 0.66, "slack_m": 0.02}
 # True parameters of a motor's station, in contrast to these: nominal, deviation (sd).
 STATION = {"stiffness_n_per_m": (229.16, 15), "friction_n_m": (8e-5, 2e-5), "efficiency": (0.66, 0.05),
@@ -27,7 +27,7 @@ TENSION_SD_N, DUTY_SD = 0.06, 0.002
 
 
 def weight_kg(motor):
-    return 1.0 + 0.1 * motor           # weighed; reference of all forces
+    return 1.0 + 0.1 * motor           # weighed mass [kg], the reference of all forces
 
 
 def model(motors, numbers):
@@ -185,7 +185,7 @@ def data(folder, motor, name, heard):
                times[-1])
     channels = [f"{cable}/tension_n", f"{cable}/duty"]
     tension, duty = unrounded(heard, motor, name)
-    gap = math.nan  # rows have one of both, because tensions are delayed
+    gap = math.nan  # a row has either tension or duty, because tensions are delayed
     fits.write_rows(folder / f"{name}.csv", ["time_s", *channels],
                     [row for t, i in zip(times, rows) for row in ([t - FILTER_S, tension[i], gap], [t, gap, duty[i]])
                      if row[0] >= 0])
