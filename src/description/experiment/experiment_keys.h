@@ -365,8 +365,8 @@ void Keys(Io& io, Experiment& e) {
        "report.");
     io("timeline", e.timeline);
     io("scale", e.scale_texts,
-       "Factors on model quantities, for sensitivity studies. Factors on the same quantity "
-       "multiply.");
+       "Factors on model quantities, for sensitivity studies. Several factors on one quantity are "
+       "multiplied.");
     io("load_cases", e.load_case_texts, "Static loads for `taut analyze`.");
     io("load_combinations", e.load_combinations,
        "Sums of load cases with partial factors, also for `taut analyze`.");

@@ -13,7 +13,7 @@ inline const Choices<CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegment
 
 template <class Io>
 void Keys(Io& io, Like<CouplingGroup> auto& g) {
-  io.Map("groups", "cpg.groups", "Group of couplings.",
+  io.Map("groups", "cpg.groups", "Group of couplings with a common weight and phase.",
          R"({"name": "same.outer_top.inner_top", "weight_per_m": 20, "phase_rad": "pi"})");
   io("name", g.name, kNeeded,
      "Name in the list of `taut check --couplings`. behind.outer_top.inner_left couples each "

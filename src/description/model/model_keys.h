@@ -264,8 +264,8 @@ void Check(const MapReader& map, BoxText& box);
 template <class Io, Either<HullDef, ConvexText> Convex>
 void Keys(Io& io, Convex& c) {
   io.Map("convex", "builder.convex",
-         "Convex solid at a node, along the part's axes: either from a file, in which each object "
-         "collides as its convex hull, or as the hull of given corners.",
+         "Convex solid at a node, along the part's axes: the objects of a file, each of which "
+         "collides as its convex hull, or the convex hull of given corners.",
          R"({"file": "foot.obj", "scale_m": 0.001, "density_kg_per_m3": 1200})");
   io("name", c.name, kResolvedOnly);
   io("body", c.body, kResolvedOnly);

@@ -100,8 +100,8 @@ struct FitNuisanceText {
 template <class Io>
 void Keys(Io& io, Like<FitNuisanceText> auto& n) {
   io.Map("", "nuisance",
-         "Nuisance parameter of the measurement, not of the robot. Unit: of the channel for an "
-         "`offset`, 1 for a `gain`, seconds for `delay_s`.",
+         "Nuisance parameter of the measurement, not of the robot. The unit is the unit of the "
+         "channel for an `offset`, 1 for a `gain`, and s for `delay_s`.",
          R"({"sd": 0.002})");
   io("low", n.low, "Lower bound.");
   io("high", n.high, "Upper bound.");
@@ -168,8 +168,8 @@ void Keys(Io& io, Like<FitWindowText> auto& w) {
   io("from_s", w.from_s, "Start on the experiment's clock, with `to_s`.");
   io("to_s", w.to_s, "End on the experiment's clock.");
   io("after_setpoint_s", w.after_setpoint_s,
-     "Window after each set point: on the data's clock in the data, on the run's clock in the "
-     "run.");
+     "Window after each set point. For the data, times are on the data's clock; for the "
+     "simulation, on the clock of the run.");
 }
 void Check(const MapReader& map, FitWindowText& window);
 
@@ -228,8 +228,8 @@ void Keys(Io& io, Like<FitSearchText> auto& s) {
      "Number of starts: the first start is at the experiments' values, the other starts are drawn "
      "from the priors.");
   io("step", s.values.step, Bound{.least = 0.0, .most = 1.0, .above_least = true},
-     "Longest finite difference step, in units of `scale`; it is shortened if halving it changes "
-     "the derivative.");
+     "Longest finite difference step, in units of `scale`; taut shortens the step if half the step "
+     "gives another derivative.");
   io("iterations", s.values.iterations, Bound{.least = 1, .most = 10'000},
      "Largest number of iterations per start.");
   io("tolerance", s.values.tolerance, Bound{.least = 0.0, .most = 0.1, .above_least = true},
@@ -267,7 +267,7 @@ template <class Io>
 void Keys(Io& io, Like<FitCarriedText> auto& c) {
   io.Map("carried", "carried",
          "Check of the data without the model: whether the measured forces balance the applied "
-         "load. Only for bodies that are held by nothing but cables and bars with compared forces.",
+         "load. Only for bodies that cables and bars alone hold.",
          R"({"name": "top", "bodies": ["n3", "n4", "n5"], "direction": [0, 0, -1]})");
   io("name", c.name, kNeeded, kName, "Name in the table.");
   io("bodies", c.bodies, kNeeded,
