@@ -108,7 +108,7 @@ void Keys(Io& io, Like<ProgramText> auto& p) {
          R"({"cables": "inner", "change_m": [[1, 0], [3, -0.02]]})");
   io("cables", p.cables, kNeeded, kCablesMeaning);
   io.OneOf({"rest_length_m", "change_m"});
-  io("rest_length_m", p.rest_length_m, Bound::kPositive, "Rest length.");
+  io("rest_length_m", p.rest_length_m, Bound::kPositive, "Rest length of the selected cables.");
   io("change_m", p.change_m, "Change of each cable's initial rest length, lengthening positive.");
 }
 template <class Io>

@@ -42,7 +42,7 @@ void Keys(Io& io, Plane& p) {
     io.Rule(R"("not": {"required": ["height_m", "point_m"]})");
     io("height_m", p.height_m, "Height of a horizontal surface.");
   }
-  io("normal", p.normal, kDirection, kInherited, "Normal, out of the solid.");
+  io("normal", p.normal, kDirection, kInherited, "Surface normal, out of the solid.");
   if constexpr (!Io::kResolved) {
     io("slope_rad", p.slope_rad,
        Bound{.least = 0.0,
@@ -66,7 +66,7 @@ template <class Io, Either<TerrainBoxDef, TerrainBoxText> Box>
 void Keys(Io& io, Box& b) {
   io.Map("box", "terrain.box", "Fixed box, such as a wall or a step.");
   io("name", b.name, kResolvedOnly);
-  io("center_m", b.center_m, kNeeded, "Center.");
+  io("center_m", b.center_m, kNeeded, "Center of the box.");
   if constexpr (Io::kResolved) {
     io("orientation", b.orientation);
     io("half_extents_m", b.half_extents_m);
@@ -127,7 +127,7 @@ void Keys(Io& io, Push& p) {
   } else {
     io("node", p.node_name, kNeeded, "Node on which the force acts, such as segment_0.tip.");
   }
-  io("direction", p.direction, kNeeded, kDirection, "Direction in the world frame.");
+  io("direction", p.direction, kNeeded, kDirection, "Direction of the force, in the world frame.");
   io("scale", p.scale, "Factor on all forces in `force_n`.");
   io("force_n", p.force_n, kNeeded, "Points [[time_s, force_n], ...], linearly interpolated.");
 }
@@ -150,8 +150,8 @@ void Keys(Io& io, Drag& d) {
   io("stiffness_n_per_m", d.stiffness_n_per_m, kNeeded, Bound::kPositive,
      "Stiffness of the spring.");
   io("damping_n_s_per_m", d.damping_n_s_per_m, Bound::kNonNegative, "Damping of the spring scale.");
-  io("from_s", d.from_s, kNeeded, Bound::kNonNegative, "Start time.");
-  io("to_s", d.to_s, kNeeded, Bound::kNonNegative, "End time, after `from_s`.");
+  io("from_s", d.from_s, kNeeded, Bound::kNonNegative, "Start time of the drag.");
+  io("to_s", d.to_s, kNeeded, Bound::kNonNegative, "End time of the drag, after `from_s`.");
 }
 void Check(const MapReader& map, DragText& drag);
 

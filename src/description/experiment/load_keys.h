@@ -120,7 +120,7 @@ void Keys(Io& io, Like<LoadCombinationText> auto& c) {
          "changes of length and temperature.",
          R"({"name": "uls", "factors": {"own_weight": 1.35, "wind": 1.5}})");
   io("name", c.name, kNeeded, kName, "Name, different from those of all load cases.");
-  io("factors", c.factors, kNeeded, "Factor by name of a load case.");
+  io("factors", c.factors, kNeeded, "Factors of load cases, by name of the load case.");
   io("max_displacement_m", c.max_displacement_m, Bound::kPositive,
      "Largest allowed displacement of any node from its position in the described pose.");
 }

@@ -59,7 +59,8 @@ template <class Io>
 void Keys(Io& io, Like<SlideText> auto& s) {
   io.Map("slide", "motion.slide", "Translation along a direction.",
          R"({"direction": [1, 0, 0], "speed_m_per_s": [[0, 0], [1, 0.5]]})");
-  io("direction", s.direction, kNeeded, kDirection, "Direction in the world frame.");
+  io("direction", s.direction, kNeeded, kDirection,
+     "Direction of the translation, in the world frame.");
   TimeLawKeys(io, s.law, "speed_m_per_s", "amplitude_m");
 }
 template <class Io>

@@ -15,7 +15,7 @@ inline const Choices<Measure> kMeasures{{"distance", Measure::kDistance},
 
 template <class Io>
 void Keys(Io& io, Like<TensionLimit> auto& t) {
-  io.Map("", "tension_limit", "Penalty for large tension.");
+  io.Map("", "tension_limit", "Penalty for a large cable tension.");
   io("limit_n", t.limit_n, kNeeded, Bound::kPositive, "Largest allowed tension of any cable.");
   io("penalty_per_n", t.penalty_per_n, kNeeded, Bound::kNonNegative,
      "Score lost per newton by which the largest tension exceeds the limit, in the score's unit.");

@@ -65,7 +65,7 @@ void Keys(Io& io, Like<StairsText> auto& s) {
          "height up to its tread. The lowest box is named NAME_0, the next NAME_1.",
          R"({"steps": 10, "width_m": 0.2, "tread_m": 0.05, "rise_m": 0.01, "at_m": [0.5, 0, 0]})");
   io("steps", s.steps, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "Number of steps.");
-  io("width_m", s.width_m, kNeeded, Bound::kPositive, "Width.");
+  io("width_m", s.width_m, kNeeded, Bound::kPositive, "Width of the stairs.");
   io("tread_m", s.tread_m, kNeeded, Bound::kPositive, "Depth of a step, along x.");
   io("rise_m", s.rise_m, kNeeded, Bound::kPositive, "Rise from step to step.");
   io("at_m", s.at_m, "Foot: the middle of the lower edge of the first step.");

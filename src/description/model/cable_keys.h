@@ -43,8 +43,8 @@ void Keys(Io& io, Cable& c) {
   io.OneOf({"prestress_n", "rest_length_m", "rest_length_ratio"});
   io("stiffness_n_per_m", c.stiffness_n_per_m, kInherited, Bound::kPositive,
      "Stiffness k. Default: E A / L, from `young_pa`, `area_m2` and the initial rest length.");
-  io("damping_n_s_per_m", c.damping_n_s_per_m, Bound::kNonNegative, "Damping b.");
-  io("rest_length_m", c.rest_length_m, Bound::kPositive, "Rest length.");
+  io("damping_n_s_per_m", c.damping_n_s_per_m, Bound::kNonNegative, "Damping coefficient b.");
+  io("rest_length_m", c.rest_length_m, Bound::kPositive, "Initial rest length L.");
   io("damping_law", c.damping_law, kDampingLaws, kInherited,
      "Damping law. Default: the model's `damping_law`. `exact`: b dl/dt, with a tension that is "
      "never negative. `clamped`: b dl/dt limited to the elastic force, as in NTRT.");

@@ -66,7 +66,7 @@ void Keys(Io& io, Joint& j) {
      "shorter rotation. "
      "A `distance` joint with a spring or a limit does not fix the distance.");
   io(Coordinate("damping_n_m_s_per_rad", "damping_n_s_per_m"), j.damping, Bound::kNonNegative,
-     "Damping.");
+     "Damping coefficient.");
   io(Coordinate("rest_rad", "rest_m"), j.rest,
      "Coordinate at which the spring exerts no force. Not allowed for a ball joint.");
   io("collides", j.collides, "Whether the joint's bodies collide with each other.");
@@ -87,7 +87,7 @@ void Keys(Io& io, Like<PinText> auto& p) {
   io("stiffness_n_m_per_rad", p.stiffness, Bound::kNonNegative,
      "Stiffness of a spring that rotates the rod back to the described pose, along the shorter "
      "rotation.");
-  io("damping_n_m_s_per_rad", p.damping, Bound::kNonNegative, "Damping.");
+  io("damping_n_m_s_per_rad", p.damping, Bound::kNonNegative, "Damping coefficient.");
 }
 
 }  // namespace taut::description

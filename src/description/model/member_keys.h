@@ -62,8 +62,8 @@ void Keys(Io& io, Like<BarText> auto& b) {
   io.Rule(kStiffnessRule);
   io("stiffness_n_per_m", b.stiffness_n_per_m, Bound::kPositive,
      "Stiffness k. Default: E A / L, from `young_pa`, `area_m2` and the unstressed length L.");
-  io("damping_n_s_per_m", b.damping_n_s_per_m, Bound::kNonNegative, "Damping b.");
-  io("rest_length_m", b.rest_length_m, Bound::kPositive, "Unstressed length.");
+  io("damping_n_s_per_m", b.damping_n_s_per_m, Bound::kNonNegative, "Damping coefficient b.");
+  io("rest_length_m", b.rest_length_m, Bound::kPositive, "Unstressed length L.");
   io("rest_length_ratio", b.rest_length_ratio, Bound::kPositive,
      "Unstressed length divided by the length in the described pose.");
   io("prestress_n", b.prestress_n, Bound::kAny,

@@ -120,7 +120,7 @@ template <class Io>
 void Keys(Io& io, Like<PartText> auto& p) {
   io.Map("", "parts", "Group of nodes and pairs.");
   io("nodes", p.nodes_text, kNeeded, kName, "Nodes by name, in the part's frame.");
-  io("pairs", p.pairs_text, "Pairs.");
+  io("pairs", p.pairs_text, "Pairs of nodes of the part.");
 }
 void Check(const MapReader& map, PartText& part);
 
@@ -166,9 +166,9 @@ void MassKeys(Io& io, Like<MassText> auto& m, Along along) {
     if (along == Along::kPair) keys.push_back("mass_kg_per_m");
     io.OneOf(keys);
   }
-  io("mass_kg", m.mass_kg, Bound::kNonNegative, "Mass.");
+  io("mass_kg", m.mass_kg, Bound::kNonNegative, "Mass of the element.");
   io("density_kg_per_m3", m.density_kg_per_m3, Bound::kNonNegative,
-     "Density, instead of `mass_kg`.");
+     "Density of the element, instead of `mass_kg`.");
   if (along == Along::kNothing) return;
   io("mass_kg_per_m", m.mass_kg_per_m, Bound::kNonNegative,
      "Mass per length of the element along its pair, instead of `mass_kg`.");
@@ -184,7 +184,7 @@ void Keys(Io& io, Rod& r) {
   io("body", r.body, kResolvedOnly);
   io("from_m", r.from_m, kResolvedOnly);
   io("to_m", r.to_m, kResolvedOnly);
-  io("radius_m", r.radius_m, kNeeded, Bound::kPositive, "Radius.");
+  io("radius_m", r.radius_m, kNeeded, Bound::kPositive, "Radius of the rod.");
   if constexpr (Io::kResolved) {
     io("material", r.material);
   } else {
@@ -206,7 +206,7 @@ void Keys(Io& io, Sphere& s) {
   io("name", s.name, kResolvedOnly);
   io("body", s.body, kResolvedOnly);
   io("center_m", s.center_m, kResolvedOnly);
-  io("radius_m", s.radius_m, kNeeded, Bound::kPositive, "Radius.");
+  io("radius_m", s.radius_m, kNeeded, Bound::kPositive, "Radius of the sphere.");
   if constexpr (Io::kResolved) {
     io("material", s.material);
   } else {
@@ -220,7 +220,7 @@ void Check(const MapReader& map, SphereText& sphere);
 template <class Io>
 void Keys(Io& io, Like<PointMassText> auto& p) {
   io.Map("point_mass", "builder.point_mass", "Point mass at a node, without contact.");
-  io("mass_kg", p.mass_kg, kNeeded, Bound::kPositive, "Mass.");
+  io("mass_kg", p.mass_kg, kNeeded, Bound::kPositive, "Mass of the element.");
   io("radius_m", p.radius_m, Bound::kNonNegative,
      "Radius of the solid sphere that defines the inertia.");
   io("inertia_kg_m2", p.inertia_kg_m2,
@@ -245,15 +245,16 @@ void Keys(Io& io, Box& b) {
             R"({"required": ["width_m", "height_m"]}])");
     io.Rule(R"("anyOf": [{"required": ["mass_kg"]}, {"required": ["density_kg_per_m3"]}, )"
             R"({"required": ["mass_kg_per_m"]}])");
-    io("size_m", b.size_m, kInherited, Bound::kPositive, "Edge lengths.");
+    io("size_m", b.size_m, kInherited, Bound::kPositive, "Edge lengths of the box.");
   }
-  io("half_extents_m", b.half_extents_m, kInherited, Bound::kPositive, "Half the edge lengths.");
+  io("half_extents_m", b.half_extents_m, kInherited, Bound::kPositive,
+     "Half the edge lengths of the box.");
   if constexpr (Io::kResolved) {
     io("material", b.material);
   } else {
     io("rotate", b.rotate, "Rotation in the part's frame, at a node.");
-    io("width_m", b.width_m, Bound::kPositive, "Width, along a pair.");
-    io("height_m", b.height_m, Bound::kPositive, "Height, along a pair.");
+    io("width_m", b.width_m, Bound::kPositive, "Width of a box along a pair.");
+    io("height_m", b.height_m, Bound::kPositive, "Height of a box along a pair.");
     MassKeys(io, b.mass, Along::kEither);
     SurfaceKeys(io, b.surface);
   }

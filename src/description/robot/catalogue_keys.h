@@ -47,10 +47,12 @@ struct CatalogueSpringText {
 template <class Io>
 void Keys(Io& io, Like<CatalogueSpringText> auto& s) {
   io.Map("spring", "springs", "Spring in series with a cable.");
-  io("stiffness_n_per_m", s.values.stiffness_n_per_m, kNeeded, Bound::kPositive, "Stiffness.");
+  io("stiffness_n_per_m", s.values.stiffness_n_per_m, kNeeded, Bound::kPositive,
+     "Stiffness of the spring.");
   io("largest_travel_m", s.values.largest_travel_m, kNeeded, Bound::kPositive,
-     "Largest extension.");
-  io("largest_force_n", s.values.largest_force_n, kNeeded, Bound::kPositive, "Largest tension.");
+     "Largest extension of the spring.");
+  io("largest_force_n", s.values.largest_force_n, kNeeded, Bound::kPositive,
+     "Largest tension of the spring.");
 }
 
 struct CatalogueForm {

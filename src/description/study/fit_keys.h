@@ -91,7 +91,7 @@ void Keys(Io& io, Like<FitPriorText> auto& p) {
   io.Map("", "prior", "Prior of the parameter: a normal distribution.", R"({"sd": 42})");
   io("mean", p.mean,
      "Mean. Default: the experiment's value; 0 for offsets and delays, 1 for gains.");
-  io("sd", p.sd, kNeeded, Bound::kPositive, "Standard deviation.");
+  io("sd", p.sd, kNeeded, Bound::kPositive, "Standard deviation of the prior.");
 }
 /// Offset, gain or delay of a channel or clock. Bounds and prior are in the same map.
 struct FitNuisanceText {
@@ -103,12 +103,13 @@ void Keys(Io& io, Like<FitNuisanceText> auto& n) {
          "Nuisance parameter of the measurement, not of the robot. The unit is the unit of the "
          "channel for an `offset`, 1 for a `gain`, and s for `delay_s`.",
          R"({"sd": 0.002})");
-  io("low", n.low, "Lower bound.");
-  io("high", n.high, "Upper bound.");
+  io("low", n.low, "Lower bound of the nuisance parameter.");
+  io("high", n.high, "Upper bound of the nuisance parameter.");
   io("start", n.start, "Start value of the search.");
   io("mean", n.mean, "Mean of the prior. Default: 0; for a gain, 1.");
   io("sd", n.sd, Bound::kPositive, "Standard deviation of the prior. Default: no prior.");
-  io("scale", n.scale, Bound::kPositive, "Typical change. Default: `sd`.");
+  io("scale", n.scale, Bound::kPositive,
+     "Typical change, used as the unit of search steps. Default: `sd`.");
 }
 
 enum class FitClock { kData };
@@ -250,7 +251,7 @@ void Keys(Io& io, Like<FitCandidateText> auto& d) {
   io.Map(
       "design", "design",
       "Candidate measurement; `taut fit --design` computes its information about the parameters.");
-  io("name", d.name, kNeeded, kName, "Name in the table.");
+  io("name", d.name, kNeeded, kName, "Name in the table of candidates.");
   io("residuals", d.residuals, kNeeded,
      "Residuals that the measurement would have. No data is needed.");
 }
@@ -269,7 +270,7 @@ void Keys(Io& io, Like<FitCarriedText> auto& c) {
          "Check of the data without the model: whether the measured forces balance the applied "
          "load. Only for bodies that cables and bars alone hold.",
          R"({"name": "top", "bodies": ["n3", "n4", "n5"], "direction": [0, 0, -1]})");
-  io("name", c.name, kNeeded, kName, "Name in the table.");
+  io("name", c.name, kNeeded, kName, "Name in the table of checks.");
   io("bodies", c.bodies, kNeeded,
      "Patterns of the loaded bodies. The forces of all cables and bars between these bodies and "
      "other bodies must be "
