@@ -42,7 +42,7 @@ struct Equilibrium {
   std::string why;                    ///< Reason, if not found.
   std::vector<std::string> left_out;  ///< Descriptions of ignored parts of the model.
   Pose pose;                          ///< The last iterate if no equilibrium was found.
-  /// One per cable; with friction along the cable: of its first span.
+  /// One per cable; for a cable with friction along its path: the tension of its first span.
   std::vector<double> cable_tension_n;
   std::vector<double> bar_force_n;  ///< One per joint; tension > 0; 0 for joints that are not bars.
   std::vector<JointLoad> joint_loads;  ///< One per joint; for supports: the reactions.
@@ -55,8 +55,8 @@ struct Equilibrium {
 
 /// Finds the equilibrium near the described pose under the forces of cables, bars, joint springs,
 /// weight, loads and frictionless planes. The equilibrium is stable, unless the search starts at an
-/// unstable equilibrium. Newton's method with a trust region minimizes the potential energy. If it
-/// fails, the loads are increased in steps; the last resort is dynamic relaxation.
+/// unstable equilibrium. Newton's method with a trust region minimizes the potential energy. If
+/// Newton's method fails, the loads are increased in steps; the last resort is dynamic relaxation.
 Equilibrium FindEquilibrium(const ModelDef& def, const LoadCaseSpec& loads = {},
                             const EquilibriumOptions& options = {});
 
@@ -99,11 +99,12 @@ Move LargestMove(const ModelDef& def, const Pose& pose);
 /// bodies (docs/theory/statics.md, section 3). Constraints are not eliminated.
 struct Tangent {
   std::vector<int> bodies;  ///< Moving bodies; each has six entries in a motion vector.
-  /// Negative derivative of the forces [N/m, N, N m/rad], symmetric. Contributions: taut cables,
-  /// bars, joint springs, weight, loads, and the constraint forces of `held`.
+  /// Negative derivative of the forces with respect to motions [N/m, N, N m/rad], symmetric.
+  /// Contributions: taut cables, bars, joint springs, weight, loads, and the constraint forces of
+  /// `held`.
   Matrix stiffness;
   Matrix geometric;  ///< Geometric stiffness: part of `stiffness` due to forces; 0 without stress.
-  Matrix mass;       ///< [kg, kg m, kg m^2]
+  Matrix mass;       ///< Mass matrix [kg, kg m, kg m^2].
   /// Constraints of joints and loaded planes, one orthonormal row each: held * motion = 0.
   Matrix held;
   /// Basis of the motions that forces can resist, one orthonormal column each. It excludes
@@ -117,8 +118,8 @@ struct Tangent {
 
 /// Computes stiffness and mass in the described pose under `loads`. If the forces are not in
 /// equilibrium, `stiffness` is the Hessian of the energy with respect to rotation vectors theta
-/// (rotation exp(theta)). It stays symmetric; the Jacobian of forces and moments differs from it by
-/// the unbalanced moments in eq. 4 of docs/theory/statics.md.
+/// (rotation exp(theta)). This Hessian is symmetric; the Jacobian of forces and moments differs
+/// from it by the unbalanced moments in eq. 4 of docs/theory/statics.md.
 Tangent FindTangent(const ModelDef& def, const LoadCaseSpec& loads = {});
 
 /// Vibration mode, rigid motion or mechanism.
@@ -161,7 +162,7 @@ struct StaticMember {
   Kind kind = Kind::kCable;
   int index = 0;        ///< Index of the cable, joint or plane.
   int part = 0;         ///< Cable: span; joint: constraint direction; contact: body.
-  double length_m = 0;  ///< Of cables and bars; otherwise 0.
+  double length_m = 0;  ///< Length of a cable or bar; otherwise 0.
   /// Force [N] or moment [N m] in the described pose; tension > 0; for contacts the normal force.
   double force_n = 0;
 };
@@ -184,9 +185,9 @@ struct RankGap {
   bool clear() const { return largest_dropped * 1e3 <= smallest_kept; }
 };
 
-/// Count of states and mechanisms for pin-jointed structures (Pellegrino and Calladine 1986). It
-/// exists if every moving body is a point or a rod between two points. Rods count as members; each
-/// point has three degrees of freedom.
+/// Count of states and mechanisms for pin-jointed structures (Pellegrino and Calladine 1986). The
+/// count exists only if every moving body is a point or a rod between two points. Rods count as
+/// members; each point has three degrees of freedom.
 struct ClassicalCount {
   int nodes = 0, members = 0;  ///< Only nodes of moving bodies count.
   RankGap rank;
@@ -202,7 +203,7 @@ struct ForceAnalysis {
   /// for translations, [m] for rotations.
   Matrix matrix;
   RankGap rank;
-  int unknowns = 0;    ///< Number of rows.
+  int unknowns = 0;    ///< Number of rows of `matrix`.
   int free_turns = 0;  ///< Number of excluded rotations, which no force could resist.
   /// Number of rigid motions that no member resists: motions of parts that no member connects to
   /// other parts. These motions move no point at which a member ends in the world.
@@ -212,9 +213,9 @@ struct ForceAnalysis {
   std::vector<SelfStress> self_stress;
   std::vector<Mode> mechanisms;  ///< Rigid motions are excluded.
   /// Stiffness [N/m] of the mechanisms under the first feasible self-stress, scaled to a largest
-  /// force density of 1 N/m (docs/theory/statics.md, eq. 8). Ascending eigenvalues of the energy
-  /// relative to the squared displacements of all points at which forces act. All positive:
-  /// prestress stability. Empty: no feasible state exists.
+  /// force density of 1 N/m (docs/theory/statics.md, eq. 8). The values are the ascending
+  /// eigenvalues of the energy relative to the squared displacements of all points at which forces
+  /// act. All values > 0: prestress stability. Empty: no feasible state exists.
   std::vector<double> mechanism_stiffness;
   std::optional<ClassicalCount> classical;
   std::vector<std::string> left_out;  ///< Descriptions of ignored parts of the model.

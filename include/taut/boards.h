@@ -9,7 +9,7 @@ namespace taut {
 /// Load cell of a board with amplifier and converter: force = n_per_count (code - counts_at_zero)
 /// (Mirletz et al. 2015, eq. 7).
 struct BoardLoadCell {
-  double n_per_count = 0.1567;              ///< [N] > 0.
+  double n_per_count = 0.1567;              ///< Force per count [N], > 0.
   double counts_at_zero = 4.9363 / 0.1567;  ///< Code without a force, 31.5.
   double saturation_counts = 741;           ///< Limit of the amplifier, 111.2 N.
   double noise_counts = 0.7;  ///< Standard deviation of the noise of a conversion (assumed).
@@ -23,14 +23,14 @@ int LoadCellCode(const BoardLoadCell& cell, double force_n, double noise) noexce
 /// length, length per count, speed limit) or its controller (T0, L0, K, B) are not included.
 struct BoardsSpec {
   double broadcast_s = 0.010;  ///< Time between two broadcasts, a multiple of 1 ms.
-  /// Time from the controllers to the boards, a multiple of 1 ms, less than `broadcast_s`. Default:
-  /// as on the emulated robot (docs/validation/virtual_robot.md).
+  /// Transmission time from the controllers to the boards, a multiple of 1 ms, less than
+  /// `broadcast_s`. Default: as on the emulated robot (docs/validation/virtual_robot.md).
   double broadcast_delay_s = 0.004;
-  double velocity_input_scale = 1.0;  ///< V0 on a board per V0 of the controller.
+  double velocity_input_scale = 1.0;  ///< Ratio of V0 on a board to V0 of the controller.
   double hold_s = 0.0;  ///< Time at the start during which motors hold their position.
   /// Whether T0 and L0 become the tension and length measured when impedance control starts.
   bool capture = false;
-  int encoder_lines = 16;  ///< Lines of the encoder on the motor's shaft, read twofold.
+  int encoder_lines = 16;  ///< Encoder lines per turn of the motor's shaft; two counts per line.
   BoardLoadCell load_cell;
 
   // Parameters of every motor.

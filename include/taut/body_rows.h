@@ -1,5 +1,5 @@
 /// Direct access to the body positions and velocities of a batch without a copy.
-/// `WorldBatch::Cables` does the same for cables.
+/// `WorldBatch::Cables` gives direct access to cables.
 ///
 /// Threads: these functions count as non-const functions of the batch. Reads through the returned
 /// pointers count as const functions.
@@ -11,7 +11,7 @@
 
 namespace taut {
 
-/// Body data of a group, the worlds that share a SIMD register. Component i (x, y, z) of body b of
+/// Body data of a group (the worlds that share a SIMD register). Component i (x, y, z) of body b of
 /// world `first_world + j` is at [(3 * b + i) * lanes + j]. The pointers refer to memory of the
 /// batch, so the values are always current, also for kinematic bodies.
 struct BodyRows {

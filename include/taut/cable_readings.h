@@ -9,13 +9,13 @@ namespace taut {
 /// number.
 template <class Number>
 struct CableReadings {
-  Number rest_length_m{};  ///< L, as measured by the encoder of a robot.
-  Number length_m{};       ///< l: path length between the ends, along all attachments.
-  Number rate_m_per_s{};   ///< dl/dt, exact, not a difference quotient.
+  Number rest_length_m{};  ///< Rest length L, as measured by the encoder of a robot.
+  Number length_m{};       ///< Path length l between the ends, along all attachments.
+  Number rate_m_per_s{};   ///< Rate dl/dt of the length, exact, not a difference quotient.
   // Forces of stiff cables are averages over the last step (docs/theory/cables.md, section 3).
-  Number tension_n{};          ///< Spring and damper, as measured by a load cell.
-  Number elastic_n{};          ///< Spring only: max(0, k (l - L)), logged by NTRT as tension.
-  Number stiffness_n_per_m{};  ///< k.
+  Number tension_n{};          ///< Tension of spring and damper, as measured by a load cell.
+  Number elastic_n{};          ///< Tension of the spring: max(0, k (l - L)), logged by NTRT.
+  Number stiffness_n_per_m{};  ///< Stiffness k.
 };
 
 /// Readings of many cables.

@@ -19,7 +19,7 @@ struct CatalogueMotor {
   std::optional<double> spool_radius_m;  ///< Radius to the center line of the cable, > 0.
   // at the motor shaft, before the gear
   double rated_torque_n_m = 0.0;                      ///< Continuous torque, > 0.
-  double peak_torque_n_m = 0.0;                       ///< > 0.
+  double peak_torque_n_m = 0.0;                       ///< Short-time torque, > 0.
   double max_speed_rad_per_s = 0.0;                   ///< At the rated torque, > 0.
   std::optional<double> rated_power_w, peak_power_w;  ///< Continuous and peak shaft power, > 0.
   std::optional<double> mass_kg;
@@ -27,7 +27,7 @@ struct CatalogueMotor {
 
 struct CatalogueSpring {
   std::string name;
-  double stiffness_n_per_m = 0.0;  ///< > 0.
+  double stiffness_n_per_m = 0.0;  ///< Stiffness, > 0.
   double largest_travel_m = 0.0;   ///< Largest extension, > 0.
   double largest_force_n = 0.0;    ///< Largest tension, > 0.
 };

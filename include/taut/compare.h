@@ -103,7 +103,7 @@ struct ChannelComparison {
   std::vector<Phase> phases;  ///< One per phase of `CompareOptions::phases`.
 };
 
-/// Maximum over all compared channels that match a pattern, as in the paper.
+/// Maximum over all compared channels that match a pattern, as in Mirletz et al. 2015.
 struct SystemMaximum {
   std::string pattern, unit;
   std::string channel_a, channel_b;  ///< Channels that contain the maximum.

@@ -18,7 +18,7 @@ struct DcMotorDef {
   double static_friction_torque_n_m = 1.2e-4;
   /// [?] Stribeck speed: half of the excess over `friction_torque_n_m` remains, > 0.
   double stribeck_speed_rad_per_s = 10.0;
-  double viscous_friction_n_m_s_per_rad = 0.0;  ///< >= 0.
+  double viscous_friction_n_m_s_per_rad = 0.0;  ///< Friction torque per rotor speed, >= 0.
 
   // --- gear and spool ---
   double gear_ratio = 76.0;  ///< [?] Turns of the rotor per turn of the spool, > 0.
@@ -28,7 +28,7 @@ struct DcMotorDef {
   double spool_radius_m = 5.17e-3;  ///< [?] To the center line of the wound cable, > 0.
 
   // --- driver and supply ---
-  double driver_resistance_ohm = 0.45;  ///< Both conducting transistors, >= 0.
+  double driver_resistance_ohm = 0.45;  ///< Sum of both conducting transistors, >= 0.
   /// Name of the supply. Motors with the same name share one supply, whose voltage drops with the
   /// sum of their currents. Their supply voltages and supply resistances must be equal.
   std::string supply = "supply";
@@ -38,11 +38,11 @@ struct DcMotorDef {
   // --- heat ---
   double rated_temperature_c = 22.0;       ///< Temperature at which `resistance_ohm` holds.
   double ambient_temperature_c = 22.0;     ///< Also the initial temperature of winding and housing.
-  double resistance_rise_per_k = 3.93e-3;  ///< Copper by default, >= 0.
-  double winding_thermal_resistance_k_per_w = 10.0;  ///< To the housing, > 0.
-  double housing_thermal_resistance_k_per_w = 29.0;  ///< To the air, > 0.
-  double winding_thermal_time_s = 5.6;               ///< > 0.
-  double housing_thermal_time_s = 220.0;             ///< > 0.
+  double resistance_rise_per_k = 3.93e-3;  ///< Relative rise; default: copper; >= 0.
+  double winding_thermal_resistance_k_per_w = 10.0;  ///< From winding to housing, > 0.
+  double housing_thermal_resistance_k_per_w = 29.0;  ///< From housing to air, > 0.
+  double winding_thermal_time_s = 5.6;               ///< Time constant, > 0.
+  double housing_thermal_time_s = 220.0;             ///< Time constant, > 0.
 
   // --- rest length servo: duty = gain (L - target) + damping dL/dt ---
   double servo_gain_per_m = 4000.0;     ///< [?] Duty per length, >= 0.
@@ -66,7 +66,7 @@ struct MotorState {
   double duty = 0.0;
   double voltage_v = 0.0;  ///< Duty times supply voltage.
   double current_a = 0.0;  ///< Winding current; > 0 winds in.
-  /// Not wrapped; 0 at the rest length of the model; increases while winding in.
+  /// Angle without wrapping; 0 at the rest length of the model; increases while winding in.
   double rotor_angle_rad = 0.0;
   double rotor_speed_rad_per_s = 0.0;  ///< > 0 winds in.
   double winding_temperature_c = 0.0;

@@ -65,7 +65,7 @@ class Diagnostics {
   /// Turns all present warnings into errors (`--strict`).
   void WarningsToErrors();
 
-  /// True without errors; warnings are allowed.
+  /// Returns whether there are no errors; warnings are allowed.
   bool ok() const noexcept { return items_.empty(); }
   const std::vector<Diagnostic>& items() const noexcept { return items_; }  ///< The errors.
   const std::vector<Diagnostic>& warnings() const noexcept { return warnings_; }
@@ -79,8 +79,8 @@ class Diagnostics {
 };
 
 /// Returns the text with control characters escaped in hexadecimal, since these could send commands
-/// to a terminal. Line ends and tabs stay. Call it before printing text from files;
-/// `Diagnostics::Format` calls it already.
+/// to a terminal. Line ends and tabs stay. Call this function before printing text from files;
+/// `Diagnostics::Format` already does.
 std::string Printable(std::string_view text);
 
 /// Returns `items` sorted by file, line and column, without duplicates.

@@ -1,9 +1,9 @@
 /// Vectorized reinforcement-learning environments: thousands of worlds of one experiment with
 /// actions, observations and rewards (docs/environments.md). Each world has a separate episode and
-/// clock. Worlds are SIMD lanes; a thread pool steps groups of lanes. The bits of a world depend
-/// only on its seed and its actions. Other worlds, the number of threads, the instruction set, and
-/// `float` or `double` arrays do not change them. With zero actions, a world has the same bits as
-/// `RunExperiment` of its `Env::Experiment`.
+/// clock. Worlds are SIMD lanes; a thread pool steps groups of lanes. The results of a world depend
+/// only on its seed and its actions, bit for bit. Other worlds, the number of threads, the
+/// instruction set, and `float` or `double` arrays do not change them. With zero actions, the
+/// results equal `RunExperiment` of the world's `Env::Experiment`, bit for bit.
 ///
 /// Arrays are row-major, with one row per world. `action_channels()` and `observation_channels()`
 /// describe the columns.
@@ -58,14 +58,14 @@ struct EpisodeState {
 
 class Env;
 
-/// View of all worlds for callbacks. Of the `f32` and `f64` arrays, only those with the element
-/// type of the `Step` or `Reset` call are filled; the others are empty.
+/// View of all worlds for callbacks. Only the arrays with the element type of the `Step` or `Reset`
+/// call (`f32` or `f64`) are filled; the others are empty.
 struct EnvView {
   const Env& env;
   std::span<const std::uint8_t> rows;  ///< Per world: whether its row is valid.
   std::span<float> observations_f32;   ///< (worlds, observations); writable.
   std::span<double> observations_f64;
-  // only in `judge`
+  // The next four are filled only in calls of `judge`.
   std::span<const float> actions_f32;  ///< (worlds, actions), as passed to `Step`.
   std::span<const double> actions_f64;
   std::span<double> rewards;           ///< (worlds); writable.
@@ -82,8 +82,8 @@ struct EnvOptions {
   std::optional<std::uint64_t> seed = {};
   /// Number of custom observations after the observed channels, filled by `observe`.
   int own_observations = 0;
-  /// Called on the thread of `Step` or `Reset` when rows contain new channel observations. It may
-  /// also change these. Values that are not finite become 0.
+  /// Called on the thread of `Step` or `Reset` when rows contain new channel observations. The
+  /// callback may also change the channel observations. Values that are not finite become 0.
   std::function<void(const EnvView&)> observe = {};
   /// Called in every step after `observe` and before new episodes begin, for the worlds that
   /// applied their action. `rewards` contains the rewards of the experiment's objective.
@@ -106,15 +106,16 @@ struct EnvStep {
   std::span<T> final_observations = {};
 };
 
-/// Checks `environment` of the experiment and adds an error per fault; returns false if there are
-/// any. Checks: it exists; its channels exist; its period is a whole multiple of the step and of
-/// all clocks; `duration_s` is a whole multiple of the period; all events are at its steps.
+/// Checks the section `environment` of the experiment. Adds an error per fault and returns false if
+/// there are any. Conditions: the section exists; its channels exist; its period is a whole
+/// multiple of the step and of all clocks; `duration_s` is a whole multiple of the period; all
+/// events are at steps of the environment.
 bool CheckEnvironment(const ExperimentSpec& experiment, Diagnostics& out);
 
 /// Loads an experiment like `LoadExperiment`. If loading fails, it also reports nonexistent
 /// channels in `record` and `environment`, if the valid part of the file suffices to find them, so
-/// that all errors appear at once. If loading succeeds, it does not check them: call `CheckRecord`
-/// and `CheckEnvironment`.
+/// that all errors appear at once. If loading succeeds, it does not check the channels: call
+/// `CheckRecord` and `CheckEnvironment`.
 std::optional<ExperimentSpec> LoadExperimentAndChannels(const std::string& path,
                                                         const Overrides& overrides,
                                                         Diagnostics& out);
@@ -141,8 +142,8 @@ class Env {
   /// Returns names and units of the action components, such as cable/NAME/rest_length_m. Components
   /// are clipped to -1..1.
   virtual const std::vector<ChannelInfo>& action_channels() const noexcept = 0;
-  /// Returns, for each action component, the value that an action of 1 stands for, in the unit of
-  /// the channel.
+  /// Returns, for each action component, the change that an action of 1 causes, in the unit of the
+  /// channel.
   virtual const std::vector<double>& action_scales() const noexcept = 0;
   /// Returns the observed trace channels, followed by the custom ones: own/0, own/1 ...
   virtual const std::vector<ChannelInfo>& observation_channels() const noexcept = 0;

@@ -15,25 +15,26 @@ namespace taut {
 /// Component of an action, -1 to 1, and the quantity that it changes. An action of 0 leaves the
 /// experiment unchanged.
 struct EnvironmentAction {
-  int cable = 0;  ///< kWorld: no cable.
+  int cable = 0;  ///< Index of the driven cable; kWorld: no cable.
   // Effect of an action of 1, > 0. Exactly one of the next four is present.
   std::optional<double> rest_length_m = {};  ///< Added to the rest length commanded at the start.
   /// Rate of change of the commanded rest length.
   std::optional<double> rest_length_rate_m_per_s = {};
   /// Added to V0 of the cable's impedance control.
   std::optional<double> velocity_input_m_per_s = {};
-  /// Added to each of `numbers`, in its unit; the sum is clipped to its valid range.
+  /// Added to each parameter in `numbers`, in the parameter's unit. The sum is clipped to the valid
+  /// range of the parameter.
   std::optional<double> by = {};
   /// Names of controller and gait parameters, as in `FindTunables` (taut/study.h).
   std::vector<std::string> numbers = {};
   std::string name = {};  ///< Name of an action on `numbers`.
 };
 
-/// Reward of a step. Over an episode without an early end, the sum is the score of a study with
-/// this objective, plus the terms below.
+/// Reward of a step. Over an episode without an early end, the sum of rewards is the score of a
+/// study with this objective, plus the terms below.
 struct EnvironmentReward : ObjectiveSpec {
   EnvironmentReward() { measure = Measure::kNone; }
-  double alive_per_s = 0;         ///< Per second of the episode.
+  double alive_per_s = 0;         ///< Reward per second of the episode.
   double work_penalty_per_j = 0;  ///< Weight of the motor work: tension times wound length.
   /// Applied once when a world fails: not finite, too fast, off the terrain, or above
   /// `max_tension_n`.
@@ -41,7 +42,7 @@ struct EnvironmentReward : ObjectiveSpec {
 };
 
 /// Domain randomization of episodes. `start_noise` and the errors of `sensors` of the experiment
-/// also depend on the seed.
+/// also depend on the seed of the episode.
 struct EnvironmentVariation : VariationSpec {
   /// Largest rotation [rad] of gravity about a random horizontal axis, equivalent to a terrain
   /// slope.

@@ -67,7 +67,7 @@ struct FileIdentity {
 /// Returns the identity of the file at `path`; {0, 0} without a file.
 FileIdentity IdentityOf(const std::string& path);
 
-/// Lock on a folder for exclusive writing by one process. It ends with the object or with the
+/// Lock on a folder for exclusive writing by one process. The lock ends with the object or with the
 /// process, even after a crash; the empty file `.lock` remains.
 class FolderLock {
  public:

@@ -8,7 +8,7 @@
 /// state give bit-identical results.
 ///
 /// Threads: any number may call these functions concurrently; there is no shared state. `forward`
-/// of the problem must allow this. Any thread may set `stop`.
+/// of the problem must be thread safe. Any thread may set `stop`.
 #pragma once
 
 #include <atomic>
@@ -77,7 +77,7 @@ using Forward = std::function<std::vector<Residuals>(std::span<const std::vector
 struct FitProblem {
   std::vector<FitParameter> parameters;
   std::vector<FitRow> rows;
-  /// For messages; numbers replace missing names.
+  /// Names for messages; numbers replace missing names.
   std::vector<std::string> group_names, experiment_names;
   Forward forward;
 };
@@ -132,9 +132,9 @@ struct FitOptions {
   int most_iterations = 100;  ///< Maximum per start.
   int dampings = 3;           ///< Trial points per iteration, with different dampings.
   double first_damping = 1e-3;
-  /// For the cosine between the residuals and the columns of the Jacobian.
+  /// Tolerance for the cosine between the residuals and the columns of the Jacobian.
   double gradient_tolerance = 1e-8;
-  double step_tolerance = 1e-8;   ///< For the step, in units of the scale.
+  double step_tolerance = 1e-8;   ///< For the step length, in units of the scale.
   double cost_tolerance = 1e-12;  ///< For the cost change, relative to the cost.
   const std::atomic<bool>* stop = nullptr;
   /// Called after each iteration of all searches, for example to store the state. Return false to
@@ -143,7 +143,7 @@ struct FitOptions {
 };
 
 struct FitResult {
-  /// Why the best search ended; without a best search, why all ended.
+  /// Reason why the best search ended; without a best search, why all searches ended.
   FitEnd end = FitEnd::kRefused;
   std::string why;
   FitState state;

@@ -43,7 +43,7 @@ struct FitExperiment {
 struct FitRange {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  std::optional<double> mean, sd;  ///< Prior; none without `sd`.
+  std::optional<double> mean, sd;  ///< Normal prior; no prior without `sd`.
   double start = 0.0;
   double scale = 0.0;  ///< Relevant change, > 0; the unit of steps.
 };
@@ -74,7 +74,8 @@ struct FitResidual {
   std::string channels;  ///< Channel pattern; empty: reference values.
   std::optional<ReferenceSpec::Statistic> references;  ///< Absent: all.
   double sd = 1.0;  ///< Standard deviation, in the unit of the channel.
-  /// Standard deviation relative to the measured value. The larger of both applies.
+  /// Standard deviation relative to the measured value. The larger of `sd` and this product
+  /// applies.
   double relative_sd = 0.0;
   FitStatistic statistic = FitStatistic::kMean;
   std::optional<std::string> phase;  ///< Time window: a phase of the timeline.

@@ -28,7 +28,7 @@ enum class Determined {
   kEstimated,   ///< Standard error at most half the prior sd; without a prior, half the scale.
   kPrior,       ///< Determined mainly by its prior; the data add little information.
   kAtBound,     ///< At a bound; the optimum is outside.
-  kDead,        ///< No residual depends on it to first order.
+  kDead,        ///< No residual depends on the parameter to first order.
   kWeak,        ///< Weakly identified: no prior, and a standard error above half the scale.
   kConfounded,  ///< Identifiable alone, but other parameters can compensate for it.
   kUnreliable,  ///< Estimated according to J^T J, but other results contradict its standard error.
@@ -51,15 +51,16 @@ struct ParameterVerdict {
   /// all sds of the data are too small by the same factor. Absent unless chi-square of the data
   /// rejects the fit.
   std::optional<double> se_residuals;
-  /// Results that contradict `se`, one clause each; empty: none. A parameter that would be
-  /// estimated is then kUnreliable.
+  /// Results that contradict `se`, one clause each; empty: none. With contradictions, a parameter
+  /// is kUnreliable instead of kEstimated.
   std::vector<std::string> contradictions;
   double se_alone = 0;  ///< Standard error from J^T J if all other parameters were known.
   double sd_ratio = 0;  ///< se / prior sd; without a prior, se / scale.
   double pull = 0;      ///< (value - prior mean) / prior sd; 0 without a prior.
   bool kink = false;    ///< The derivative is unreliable; see `FitColumn::kink`.
   /// For kConfounded: a compensating change, as pairs of parameter and change in its unit, this
-  /// parameter first. It changes all residuals together only by `confounded_residual` (eq. F.13).
+  /// parameter first. This change alters all residuals together only by `confounded_residual` (eq.
+  /// F.13).
   std::vector<std::pair<std::size_t, double>> confounded_with;
   double confounded_residual = 0;
   std::string sentence;
@@ -138,7 +139,7 @@ struct FitAlias {
 struct AliasTest {
   std::string name, unit;
   double value = 0;  ///< Estimate of the effect.
-  double se = 0;     ///< At least the error by the residuals.
+  double se = 0;     ///< Standard error, at least the error by the residuals.
   double fall = 0;   ///< Decrease of chi-square.
   double p = 1;      ///< Probability of this decrease by chance.
   /// Parameters can compensate for the effect, so the data do not contain it as a separate effect.
@@ -219,7 +220,7 @@ FitErrors HoldOut(const FitProblem& test, const std::vector<double>& values);
 struct ProfilePoint {
   double value = 0;
   double rise = 0;             ///< Chi-square (twice the cost) minus its value for the fit.
-  std::vector<double> values;  ///< All parameters.
+  std::vector<double> values;  ///< Values of all parameters.
   std::string failed;          ///< Reason if the point could not be computed.
 };
 
@@ -231,8 +232,8 @@ struct FitProfile {
   /// infinite.
   double low = 0, high = 0;
   bool low_open = false, high_open = false;
-  /// Values of a point with lower cost than the fit, which was then not the minimum. Use them as a
-  /// start.
+  /// Values of a point with lower cost than the fit, if there is one: the fit was not the minimum.
+  /// Start a new fit from these values.
   std::optional<std::vector<double>> better;
   std::string sentence;
   std::string why;  ///< Reason, if there is no profile.
@@ -246,10 +247,10 @@ struct ProfileOptions {
 };
 
 /// Computes the profile likelihood of one parameter: the minimum of chi-square over all other
-/// parameters at fixed values of this one. It proceeds from the fit outward, then starts again from
-/// each neighbor's result, and keeps the lower minimum. Unlike standard errors, profiles include
-/// nonlinearity (docs/theory/identification.md, section 5). `se`: standard error of the parameter,
-/// for the spacing of the points.
+/// parameters at fixed values of this one. The search proceeds from the fit outward, then starts
+/// again from each neighbor's result, and keeps the lower minimum. Unlike standard errors, profiles
+/// include nonlinearity (docs/theory/identification.md, section 5). `se`: standard error of the
+/// parameter, for the spacing of the points.
 FitProfile ProfileParameter(const FitProblem& problem, const std::vector<double>& values,
                             std::size_t parameter, double se, const ProfileOptions& options = {});
 
@@ -286,7 +287,7 @@ enum class FitJudgement {
   kRejected,        ///< Rejected by chi-square: the model, the priors or the sds are wrong.
   kContradiction,   ///< Experiments fitted alone disagree by more than their errors.
   kUnidentifiable,  ///< The data do not determine a parameter that is no nuisance parameter.
-  kUnreliable,      ///< The standard error of such a parameter is contradicted.
+  kUnreliable,      ///< Other results contradict the standard error of such a parameter.
   kWorse,           ///< Worse than the start values on held-out data.
   kNone,            ///< There is no fit.
 };

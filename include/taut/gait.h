@@ -1,11 +1,11 @@
-/// Gaits: signals for many cables, as velocity inputs V0 of impedance control (paper eq. 3) or as
-/// changes of rest lengths. Kinds: sine waves, central pattern generators, tables, and
+/// Gaits: signals for many cables, as velocity inputs V0 of impedance control (Mirletz et al. 2015,
+/// eq. 3) or as changes of rest lengths. Kinds: sine waves, central pattern generators, tables, and
 /// goal-directed laws. Each gait is a separate file (docs/formats/gait.md). The experiment defines
 /// the controller that plays it and the clock of the gait.
 ///
 /// All numbers of a gait are doubles; `GaitValues` lists them by name for tuning. A gait selects
-/// cables by name, and `ResolveGait` finds them in a robot. So one gait works on spines with any
-/// number of segments.
+/// cables by name, and `ResolveGait` finds them in a robot. Therefore one gait works on spines with
+/// any number of segments.
 #pragma once
 
 #include <cstddef>
@@ -66,10 +66,10 @@ enum class CpgSymmetry {
 /// Group of couplings with common weight and phase.
 struct CouplingGroup {
   std::string name;  ///< For example "behind.outer_top.inner_left"; see `FindCouplings`.
-  /// w [1/m], or [1/(m s)] for rest lengths. Multiplied by the amplitude of the neighbor, it is a
+  /// Weight w [1/m], or [1/(m s)] for rest lengths. Weight times amplitude of the neighbor is a
   /// rate in rad/s.
   double weight = 0.0;
-  double phase_rad = 0.0;  ///< phi: target of theta_j - theta_i.
+  double phase_rad = 0.0;  ///< Phase phi: target of theta_j - theta_i.
   SourceRef at;
 };
 
@@ -80,8 +80,8 @@ struct CpgFeedback {
   double reference_n = 0.0;
 };
 
-/// Central pattern generator: one phase oscillator with amplitude dynamics per cable (paper eq.
-/// 4-6).
+/// Central pattern generator: one phase oscillator with amplitude dynamics per cable (Mirletz et
+/// al. 2015, eq. 4-6).
 struct CpgGait {
   double frequency_hz = 1.0;        ///< Frequency v of all oscillators.
   double amplitude = 0.05;          ///< Amplitude R of all oscillators [m/s], or [m]; >= 0.
@@ -103,7 +103,7 @@ struct TableGait {
   std::vector<double> time_s;             ///< Increasing; the first is 0.
   std::vector<std::vector<double>> rows;  ///< One row per time, one value per cable: [m/s], or [m].
   bool linear = false;  ///< Linear interpolation; false: constant until the next row.
-  /// Time to repeat from after the last row; absent: the last row stays.
+  /// Time from which the table repeats after its last row; absent: the last row remains.
   std::optional<double> repeat_from_s;
   SourceRef at;
 };
@@ -135,9 +135,9 @@ struct FeedbackOscillator {
   SourceRef at;
 };
 
-/// CPG with feedback from two neural networks (docs/theory/gaits.md, eq. G.15 to G.21). One is
-/// shared by all cables; its inputs are length and tension of a cable. The other is shared by all
-/// joints; its input is the direction of the goal.
+/// CPG with feedback from two neural networks (docs/theory/gaits.md, eq. G.15 to G.21). One network
+/// is shared by all cables; its inputs are length and tension of a cable. The other network is
+/// shared by all joints; its input is the direction of the goal.
 struct FeedbackCpgGait {
   double frequency_hz = 1.0;  ///< Initial frequency v of all oscillators.
   double convergence_per_s = 5.0;
@@ -195,7 +195,7 @@ bool SaveGait(const GaitSpec& gait, const std::string& path, Diagnostics& out);
 
 /// Order of the spine's cables in NTRT's CPG. Learned parameters are valid for one order only.
 enum class NtrtCableOrder {
-  kPaper2015,  ///< One builder after another, as during the learning of the paper's gait.
+  kPaper2015,  ///< One builder after another, as for the learned gait of Mirletz et al. 2015.
   kSince2016,  ///< One pair of nodes after another.
 };
 

@@ -23,8 +23,8 @@ struct GuessedMapping {
 
 /// Reads the first lines of a text table and guesses its encoding, separator, decimal mark, header,
 /// clock and units. Assigns columns to channels of the robot by the names and the unit in each
-/// column name. Knows the layouts of LabVIEW (.lvm), OptiTrack, Vicon and Qualisys (.tsv). Returns
-/// nothing and adds a diagnostic if the file cannot be read or has no rows of numbers.
+/// column name. Recognizes the layouts of LabVIEW (.lvm), OptiTrack, Vicon and Qualisys (.tsv).
+/// Returns nothing and adds a diagnostic if the file cannot be read or has no rows of numbers.
 std::optional<GuessedMapping> GuessMapping(const std::string& path, const RobotNames& robot,
                                            Diagnostics& out);
 

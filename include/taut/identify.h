@@ -28,13 +28,14 @@ struct FitPoint {
   std::size_t experiment = 0;  ///< Index of the experiment in the fit.
   std::string channel, unit;
   std::string where;  ///< For example "set point 3", "late", "at 2.5 s".
-  /// On the clock of the experiment; for a window, its middle; for a load case, its number, from 1.
+  /// Time on the clock of the experiment; for a window, its middle; for a load case, its number,
+  /// from 1.
   double time_s = 0;
   double measured = 0, sd = 1;
 };
 
-/// Options of an `Identification`. It caches computed points within a run, and across runs if
-/// `memory_file` is set.
+/// Options of an `Identification`. An identification caches computed points within a run, and
+/// across runs if `memory_file` is set.
 struct IdentifyOptions {
   int threads = 0;          ///< 0: one per core.
   std::string memory_file;  ///< SQLite file; created if missing. Empty: no file.

@@ -22,7 +22,7 @@ struct NtrtOptions {
 /// Counts of the structure that NTRT would build from the files.
 struct NtrtCounts {
   int files = 0;
-  int nodes = 0, pairs = 0;  ///< All in the files, even if unused.
+  int nodes = 0, pairs = 0;  ///< All nodes and pairs in the files, even if unused.
   int rods = 0, boxes = 0, spheres = 0;
   int bodies = 0;  ///< Solids that share a node form one body.
   int cables = 0;

@@ -22,7 +22,7 @@ namespace taut {
 /// Contact point of a body.
 struct TouchDef {
   int body = 0;
-  int other = kWorld;     ///< Other body; it gets the opposite force.
+  int other = kWorld;     ///< Other body; the opposite force acts on it.
   Vec3 point_m, normal;   ///< Unit normal, toward `body`.
   double friction = 0.0;  ///< Static friction coefficient, >= 0.
 };
@@ -93,14 +93,14 @@ HoldingForces FindHoldingForces(const ModelDef& def, const LoadCaseSpec& loads,
 /// Interval of a force. An end is infinite if the force is unbounded, for example when bodies jam.
 struct ForceInterval {
   double low_n = 0, high_n = 0;
-  /// Each end may lie outside the exact interval by up to this; the interval is never too narrow.
+  /// Each end may lie outside the exact interval by up to this force; never inside it.
   double uncertain_n = 0;
 };
 
 struct IntervalOptions {
   std::vector<TouchDef> touches;
-  /// Whether the described rest lengths determine the forces of cables and bars. Otherwise these
-  /// forces are unknown, with cables within `bounds`.
+  /// Whether the described rest lengths determine the forces of cables and bars. False: these
+  /// forces are unknown, and `bounds` limits the cables.
   bool known_tensions = true;
   std::vector<CableBounds> bounds;  ///< One per cable; empty: all tensions >= 0.
   /// Allowed residual, relative to the largest load.

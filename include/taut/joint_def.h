@@ -35,7 +35,7 @@ enum class JointKind {
 /// In the described pose, angles are 0 if `turned` is the identity. If the coordinate is an angle,
 /// its forces are torques [N m]; otherwise they are in N.
 struct JointDef {
-  /// Largest initial gap of a joint [m]; the first step closes it.
+  /// Largest initial gap of a joint [m]; the first step closes the gap.
   static constexpr double kClosed_m = 1e-6;
 
   std::string name;
@@ -51,8 +51,8 @@ struct JointDef {
   // Properties along the coordinate.
   std::optional<double> least, most;  ///< Joint limits; a ball joint has only `most`.
   double restitution = 0.0;           ///< Coefficient of restitution of the joint limits, 0..1.
-  // For a ball joint, the next three act on its rotation vector (angle up to half a turn) and its
-  // angular velocity, in the same way about every axis.
+  // For a ball joint, friction, stiffness and damping act on its rotation vector (angle up to half
+  // a turn) and its angular velocity, in the same way about every axis.
   double friction = 0.0;                  ///< Largest Coulomb friction [N or N m], >= 0.
   double stiffness = 0.0, damping = 0.0;  ///< Spring stiffness and damping coefficient, >= 0.
   double rest = 0.0;      ///< Coordinate of the unloaded spring; 0 for a ball joint.
@@ -137,7 +137,7 @@ constexpr bool HasCoordinate(JointKind kind) noexcept {
   return RowOf(kind).coordinate != JointCoordinate::kNone;
 }
 
-/// Returns whether the coordinate is an angle.
+/// Returns whether the coordinate of a kind of joint is an angle.
 constexpr bool IsAngle(JointKind kind) noexcept {
   return RowOf(kind).coordinate == JointCoordinate::kAngle;
 }

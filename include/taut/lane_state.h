@@ -28,7 +28,7 @@ class LaneState {
 
   int lane() const noexcept { return static_cast<int>(lane_); }
   bool reads() const noexcept { return to_ == nullptr; }
-  /// Makes `failed()` true, because the state cannot be restored.
+  /// Reports that the state cannot be restored: `failed()` becomes true.
   void Fail() noexcept { failed_ = true; }
   /// Returns true after `Fail` or after a read past the end.
   bool failed() const noexcept { return failed_ || short_; }

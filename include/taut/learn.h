@@ -30,7 +30,7 @@ struct Evaluation {
   std::vector<RolloutResult> worlds;
 };
 
-/// Returns the world of candidate `values` without perturbations; it is the first world.
+/// Returns the first world of candidate `values`, which has no perturbations.
 RolloutWorld NominalWorld(const StudySpec& study, const std::vector<double>& values);
 /// Returns all worlds of candidate `values`. Perturbations depend on the study's seed and, with
 /// `PerturbationSpec::redraw`, on `evaluation`.
@@ -42,7 +42,7 @@ double ParameterValue(const StudyParameter& parameter, double x);
 
 /// Evaluates candidates in this process or in the processes of a cluster.
 ///
-/// Threads: call it from one thread at a time. It calls `Done` from other threads.
+/// Threads: call `Evaluate` from one thread at a time. It calls `Done` from other threads.
 class Evaluator {
  public:
   virtual ~Evaluator() = default;

@@ -35,8 +35,8 @@ struct HandSpec {
 class LiveRun {
  public:
   /// Prepares the start of the experiment, with the same diagnostics as `RunExperiment`. Returns
-  /// null if the start fails, or if `go_on` returns false; it is polled until the start is found.
-  /// `extensions`: custom controllers and sensors in addition to the experiment's.
+  /// null if the start fails, or if `go_on` returns false. `go_on` is polled until the start is
+  /// found. `extensions`: custom controllers and sensors in addition to the experiment's.
   static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out,
                                         const std::function<bool()>& go_on = {},
                                         const Extensions& extensions = {});
@@ -64,8 +64,8 @@ class LiveRun {
   /// `DragStiffness()`.
   virtual void SetHand(const std::optional<HandSpec>& hand) = 0;
   /// Returns the stiffness of the interactive drag [N/m]: 200 N/m per kilogram of the model, enough
-  /// to lift any robot. It is less if the body of the node is too light for this stiffness at the
-  /// step of the experiment.
+  /// to lift any robot. The stiffness is less if the body of the node is too light for this
+  /// stiffness at the step of the experiment.
   virtual double DragStiffness() const = 0;
   /// Applies a constant force for `duration_s`, starting now.
   virtual void Push(const ExternalForce& push, double duration_s) = 0;

@@ -15,7 +15,7 @@ namespace taut {
 struct BodyForce {
   int body = 0;
   Vec3 point_m, force_n;
-  Vec3 torque_n_m = {};  ///< In addition to the moment of the force.
+  Vec3 torque_n_m = {};  ///< In addition to the moment of `force_n`.
 };
 /// Returns the forces of all cables at their attachments under the described tensions, and of
 /// `joints` (one per joint) at their points. Forces on the world are included.

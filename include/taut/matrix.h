@@ -1,4 +1,4 @@
-/// Dense matrix of doubles without linear algebra functions; use a library for those.
+/// Dense matrix of doubles. For linear algebra functions, use another library.
 #pragma once
 
 #include <cstddef>

@@ -3,14 +3,14 @@
 
 namespace taut {
 
-/// Mass distribution of a member in modal analysis. In simulations it is always lumped.
+/// Mass distribution of a member in modal analysis. In simulations, the mass is always lumped.
 enum class MemberMass {
   kLumped,      ///< Half the mass at each end.
   kConsistent,  ///< Distributed along the member, with linear displacements between its ends.
 };
 
-/// Cross section and limits of a member; 0: unknown. Simulations do not use them, because the
-/// stiffnesses and masses that follow from them are stored elsewhere in the model.
+/// Cross section and limits of a member; 0: unknown. Simulations do not use these values; they use
+/// the stiffnesses and masses that the model stores elsewhere.
 struct MemberDef {
   double area_m2 = 0.0;            ///< Cross-sectional area, >= 0.
   double young_pa = 0.0;           ///< Young's modulus E, >= 0.
@@ -19,7 +19,7 @@ struct MemberDef {
   double yield_pa = 0.0;           ///< Yield stress in tension and compression, >= 0.
   double strength_n = 0.0;         ///< Breaking force in tension, >= 0.
   double expansion_per_k = 0.0;    ///< Coefficient of thermal expansion.
-  /// Mass of a cable or bar, >= 0. The bodies at both ends include half of it each.
+  /// Mass of a cable or bar, >= 0. Each of the bodies at its two ends includes half of this mass.
   double mass_kg = 0.0;
   MemberMass mass = MemberMass::kLumped;
   bool operator==(const MemberDef&) const = default;

@@ -15,15 +15,15 @@ namespace taut {
 
 struct SizingMaterial {
   double young_pa = 0.0;           ///< Young's modulus E, > 0; not used for cables.
-  double yield_pa = 0.0;           ///< > 0.
-  double density_kg_per_m3 = 0.0;  ///< > 0.
+  double yield_pa = 0.0;           ///< Yield stress, > 0.
+  double density_kg_per_m3 = 0.0;  ///< Density, > 0.
 };
 
 /// Member to size, with its requirements.
 struct SizingTask {
   std::string name;
   SizingMaterial material;
-  double length_m = 0.0;            ///< > 0.
+  double length_m = 0.0;            ///< Member length, > 0.
   std::vector<double> force_n;      ///< One per load case; tension > 0; for cables >= 0.
   double yield_factor = 1.0;        ///< Smallest allowed ratio of yield stress to stress, > 0.
   double buckling_factor = 1.0;     ///< Smallest allowed ratio of Euler load to compression, > 0.

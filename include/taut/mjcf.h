@@ -13,9 +13,9 @@
 
 namespace taut {
 
-/// Conversion of a MuJoCo spring tendon that is shorter than its springlength.
+/// Conversion of a MuJoCo spring tendon, by its behavior while shorter than its springlength.
 enum class MjcfSlack {
-  kTensionOnly,  ///< A cable; it has no force then.
+  kTensionOnly,  ///< A cable, which has no force in that state.
   kAsMujoco,     ///< A bar that pushes: a joint of kind distance with a spring.
 };
 
@@ -23,7 +23,8 @@ struct MjcfImport {
   /// Length [m] and mass [kg] of one file unit. Default: 1, with a warning if that is unlikely.
   std::optional<double> length_unit_m = {}, mass_unit_kg = {};
   MjcfSlack slack = MjcfSlack::kTensionOnly;
-  /// Omits the dry friction of tendons that become cables, with a warning. False: it is an error.
+  /// Omits the dry friction of tendons that become cables, with a warning. False: dry friction is
+  /// an error.
   bool without_frictionloss = false;
   /// Keyframe of the file, as a name or a number from 0, for the initial pose and controls. Empty:
   /// the described bodies and controls of 0.

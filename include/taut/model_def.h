@@ -1,6 +1,6 @@
 /// Model definition: bodies, shapes, cables, joints and terrain of a robot as plain numbers, from
-/// which a `Model` is compiled. It comes from a model file (`taut/spec.h`) or directly from a
-/// program.
+/// which a `Model` is compiled. The definition is read from a model file (`taut/spec.h`) or filled
+/// in by a program.
 ///
 /// SI units. World frame W: right-handed, z up, x forward, y left. Positions and directions are in
 /// W, in the described pose (at t = 0, before any settling).
@@ -35,8 +35,8 @@ struct StribeckDef {
 /// axis.
 struct FrictionDirections {
   double forward = 1.0, backward = 1.0, sideways = 1.0;  ///< >= 0.
-  /// Forward direction of any length in W at t = 0, fixed to the body. Zero, for rods only: from
-  /// `from_m` to `to_m`.
+  /// Forward direction of any length in W at t = 0, fixed to the body. The zero vector (only for
+  /// rods) means: from `from_m` to `to_m`.
   Vec3 axis;
   bool operator==(const FrictionDirections&) const = default;
 };
@@ -103,9 +103,8 @@ struct HullDef {
   static constexpr int kMostCorners = 64;
   std::string name;
   int body = 0;
-  std::vector<Vec3>
-      /// 4 to kMostCorners points, not all in one plane. Points inside the hull are ignored.
-      corners_m;
+  /// 4 to kMostCorners points in W, not all in one plane. Points inside the hull are ignored.
+  std::vector<Vec3> corners_m;
   Material material;
   bool collides = true;
 };
@@ -120,8 +119,8 @@ struct NodeDef {
 
 /// Damping law of a cable (docs/theory/cables.md).
 enum class DampingLaw {
-  kExact,    ///< b dl/dt; the tension is never negative (paper eq. 1).
-  kClamped,  ///< b dl/dt, limited to +- the elastic force, as in NTRT.
+  kExact,    ///< Force b dl/dt; the tension is never negative (Mirletz et al. 2015, eq. 1).
+  kClamped,  ///< Force b dl/dt, limited to +- the elastic force, as in NTRT.
 };
 
 /// Actuator of a cable: changes its rest length.
@@ -145,7 +144,7 @@ struct ActuatorDef {
 };
 
 /// Wheel (pulley or drum): cylinder on a body around which a cable bends (docs/theory/cables.md,
-/// section 4). It is infinitely long and has no mass.
+/// section 4). The cylinder is infinitely long and has no mass.
 struct WheelDef {
   Vec3 axis;              ///< Unit vector in W, in the described pose.
   double radius_m = 0.0;  ///< Radius to the center line of the cable, > 0.
@@ -176,7 +175,7 @@ enum class CableTouches {
 
 /// Cable: tension-only spring and damper through two or more attachments, with the same tension
 /// everywhere. Friction at attachments divides it into spans with different tensions
-/// (docs/theory/cables.md, section 5); the actuator then winds at the first attachment.
+/// (docs/theory/cables.md, section 5); the actuator of such a cable winds at the first attachment.
 struct CableDef {
   static constexpr int kMostSpans = 16;  ///< Maximum number of spans separated by friction.
   /// Maximum number of edges and rods that bend the cable at one time.
@@ -188,7 +187,8 @@ struct CableDef {
   double rest_length_m = 0.0;              ///< L > 0 at t = 0.
   DampingLaw damping_law = DampingLaw::kExact;
   ActuatorDef actuator;
-  /// Except kNone: needs two attachments without wheels and `radius_m` > 0.
+  /// Obstacles of the cable. All except kNone require two attachments without wheels, and
+  /// `radius_m` > 0.
   CableTouches touches = CableTouches::kNone;
   double radius_m = 0.0;  ///< > 0 unless `touches` is kNone.
   /// Friction coefficient mu at obstacles, along and across the cable, >= 0. Not with a `dc_motor`.
@@ -217,8 +217,8 @@ struct TerrainBoxDef {
   Material material;
 };
 
-/// Height field: ground heights on a rectangular grid. Each square cell has two triangles. It is
-/// solid below; outside the rectangle there is no ground.
+/// Height field: ground heights on a rectangular grid. Each square cell has two triangles. The
+/// ground is solid below them and ends at the sides of the rectangle.
 struct HeightFieldDef {
   /// Diagonal that divides a cell into triangles. Corner (i, j) is corner i along x and j along y.
   enum class Split {

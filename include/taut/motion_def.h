@@ -26,10 +26,10 @@ struct MotionDef {
   std::string name;
   int body = 0;                   ///< The body must be `fixed`, so that only this motion moves it.
   Vec3 direction{0.0, 0.0, 1.0};  ///< Unit vector in W.
-  TimeLaw slide;                  ///< [m], [m/s]
+  TimeLaw slide;                  ///< Displacement along `direction` [m]; `speed` in m/s.
   Vec3 axis{0.0, 0.0, 1.0};       ///< Unit vector in W.
   Vec3 center_m;                  ///< Point on the axis at t = 0; it moves with the body.
-  TimeLaw turn;                   ///< [rad], [rad/s]
+  TimeLaw turn;                   ///< Angle about `axis` [rad]; `speed` in rad/s.
 };
 
 }  // namespace taut

@@ -12,7 +12,7 @@ enum class Measure {
   kDistance,  ///< Horizontal displacement of the center of mass from `from_s` to the end [m].
   kHeading,   ///< Component of this displacement along `direction` [m]; may be negative.
   kDistancePerEnergy,  ///< Distance divided by motor work [m/J]: tension times length wound in.
-  kNearer,    ///< Decrease of the distance of the watched body to the goal since `from_s` [m].
+  kNearer,    ///< Decrease of the distance from `GoalSpec::body` to the goal since `from_s` [m].
   kTracking,  ///< Minus the root mean square of tension minus set point [N].
   kNone,      ///< 0; for penalties or a custom score only.
 };

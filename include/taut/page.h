@@ -29,8 +29,8 @@ namespace taut {
 
 struct PageOptions {
   std::string title = "taut";
-  /// Playback speed: simulated time / real time, > 0. 0: `Show` does not wait. Users can change it
-  /// in the browser.
+  /// Playback speed: simulated time / real time, > 0. 0: `Show` does not wait. Users can change the
+  /// speed in the browser.
   double speed = 1;
   /// Address to listen on; the default accepts only connections from this machine.
   std::string address = "127.0.0.1";

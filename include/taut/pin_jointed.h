@@ -14,7 +14,7 @@
 
 namespace taut {
 
-/// Node, where members end: an end of a rod, a point of a body at which a force acts, or several
+/// Node at which members end: an end of a rod, a point of a body at which a force acts, or several
 /// points that a joint unites.
 struct PinNode {
   std::string name;
@@ -25,7 +25,7 @@ struct PinNode {
   /// Share of the masses of its bodies. The nodes reproduce mass and center of mass of a body, but
   /// not its inertia.
   double mass_kg = 0;
-  Vec3 load_n;  ///< Weight.
+  Vec3 load_n;  ///< Weight of `mass_kg`, in W.
   /// Force that balances loads and members: the reaction at pinned nodes and on the ground, the
   /// residual at other nodes.
   Vec3 left_n;

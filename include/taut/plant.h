@@ -1,7 +1,7 @@
 /// Interface between controllers and plants. A plant provides observations and a clock, and
-/// receives commands. It is a simulated world, several worlds that share a SIMD register, a
+/// receives commands. A plant is a simulated world, several worlds that share a SIMD register, a
 /// recording, or a real robot. Controllers, recorders, learners and displays work with all of them.
-/// A plant contains one or more equal robots, its lanes.
+/// A plant contains one or more identical robots, called its lanes.
 ///
 /// Rows are arrays of a plant with cable c of lane j at index [c * lanes + j].
 ///
@@ -9,7 +9,8 @@
 /// its sensors. Plants are independent of each other.
 ///
 /// Commands of custom controllers, and readings of plants other than simulations, must be finite.
-/// Otherwise runs end with an error, rollouts fail, and a `Simulation` reports the problem.
+/// If a value is not finite, runs end with an error, rollouts fail, and a `Simulation` reports the
+/// problem.
 #pragma once
 
 #include <cstddef>
@@ -67,7 +68,7 @@ struct Observation {
   const double* time_s = nullptr;  ///< Per lane: time of its clock [s].
   ReadingRows cables;              ///< Rows: readings of the cables.
   /// Row of rest lengths computed from motor shaft angles [m]. They differ from the true rest
-  /// lengths if gears have backlash. Null: no difference.
+  /// lengths if gears have backlash. Null: they do not differ.
   const double* shaft_m = nullptr;
   const std::uint32_t* faults = nullptr;  ///< Row of `FaultBits`; null: no fault detection.
   const Bodies* bodies = nullptr;         ///< Null if unknown.
@@ -146,7 +147,7 @@ class World : public Bodies {
   virtual std::uint64_t Hash(int lane) const = 0;
 };
 
-/// System that is controlled.
+/// System under control: a simulation, a recording or a robot.
 class Plant {
  public:
   virtual ~Plant() = default;
@@ -156,13 +157,13 @@ class Plant {
   /// Returns the commands, which controllers change.
   virtual Commands& commands() = 0;
 
-  /// Advances the clock of lane j by `step_s[j]` to `to_s[j]`, which is more exact than a sum of
-  /// steps, under the current commands. A simulation computes a step, a robot waits, a recording
-  /// continues to a later row. Lanes with step 0 do not advance.
+  /// Advances the clock of lane j by `step_s[j]` under the current commands. `to_s[j]` is the time
+  /// at the end of this step, more exact than a sum of steps. A simulation computes a step, a robot
+  /// waits, a recording continues to a later row. Lanes with step 0 do not advance.
   virtual void Advance(const double* step_s, const double* to_s) = 0;
 
-  /// Sets the clock of a lane to 0 and its commands to their initial values. The caller must have
-  /// set the state of the lane.
+  /// Sets the clock of a lane to 0 and its commands to their initial values. Set the state of the
+  /// lane before this call.
   virtual void Restart(int lane) = 0;
 
   /// Saves or restores clock and commands of a lane, like `Controller::Serialize`. The state of the
@@ -183,10 +184,10 @@ std::unique_ptr<Plant> PlantOf(WorldBatch& batch);
 
 /// Returns a plant with one lane that replays a recording, for example to compute the commands of
 /// another controller. Observations are the recorded cable readings (`cable/NAME/...`) and, if all
-/// bodies were recorded, bodies. Commands have no effect. A quantity that is missing or not finite
-/// in a row keeps its previous value and sets `kFaultNoReading`. Times count from the first row.
-/// Trace and robot must outlive the plant. Returns null and adds an error if the recording has no
-/// row, or no channel of the robot's cables.
+/// bodies were recorded, their poses and velocities. Commands have no effect. A quantity that is
+/// missing or not finite in a row keeps its previous value and sets `kFaultNoReading`. Times count
+/// from the first row. Trace and robot must outlive the plant. Returns null and adds an error if
+/// the recording has no row, or no channel of the robot's cables.
 std::unique_ptr<Plant> ReplayOf(const Trace& trace, const RobotSpec& robot, Diagnostics& out);
 
 // --- custom controllers and sensors --------------------------------------------------------------
@@ -194,8 +195,8 @@ std::unique_ptr<Plant> ReplayOf(const Trace& trace, const RobotSpec& robot, Diag
 /// Lanes in which a controller or sensor acts in this step.
 struct Tick {
   Lanes due = 0;
-  /// Per lane: number of its previous ticks. At 0, the first tick, discard all memory of the lane;
-  /// it belongs to an earlier run.
+  /// Per lane: number of its previous ticks. At the first tick (0), discard the controller's memory
+  /// of the lane, which belongs to an earlier run.
   const std::int64_t* number = nullptr;
 };
 
@@ -205,7 +206,7 @@ struct ControlSetup {
   const ExperimentSpec& experiment;
   std::span<const RolloutWorld* const> lanes;  ///< Variants of the experiment, one per lane.
   int first_world = 0;  ///< World index of the first lane in a `Simulation`; otherwise 0.
-  /// Number of lanes with used results; the others repeat the first lane. -1: all lanes.
+  /// Number of lanes in use; the remaining lanes repeat the first lane. -1: all lanes.
   int worlds = -1;
 };
 
@@ -232,8 +233,7 @@ class Controller {
   /// Returns a text about the faults in a lane since its restart; empty if there are none.
   virtual std::string Faults(int lane) const { return (void)lane, std::string(); }
 
-  // --- interactive changes of a lane; override these functions if the controller supports them
-  // ---
+  // --- interactive changes of a lane: override the functions that the controller supports ---
   /// Returns the gains of a cable; nothing if it has none.
   virtual std::optional<ImpedanceGains> Gains(int lane, int cable) const {
     return (void)lane, (void)cable, std::nullopt;
@@ -274,8 +274,9 @@ struct Extensions {
 };
 
 /// Returns factories of taut's controllers for a specification as in an experiment file, for
-/// `Extensions::controllers`. It contains a gait, a control law, or both. The parameters are the
-/// same in all variants. The cable indices in `spec` must refer to the robot of the simulation.
+/// `Extensions::controllers`. The specification contains a gait, a control law, or both. The
+/// parameters are the same in all variants. The cable indices in `spec` must refer to the robot of
+/// the simulation.
 std::vector<ControllerFactory> ControllersOf(const ControllerSpec& spec);
 
 using Brought [[deprecated("Extensions")]] = Extensions;

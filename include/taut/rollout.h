@@ -79,8 +79,8 @@ class Rollouts {
 
   /// Returns the number of lanes of a group.
   virtual int lanes() const noexcept = 0;
-  /// Returns the number of worlds that run concurrently: lanes times threads. Multiples of it are
-  /// the most efficient batch sizes.
+  /// Returns the number of worlds that run concurrently: lanes times threads. Multiples of this
+  /// number are the most efficient batch sizes.
   virtual int parallel_worlds() const noexcept = 0;
 };
 

@@ -30,7 +30,7 @@ struct MotorSummary {
   double energy_from_supply_j = 0;
   double energy_to_cable_j = 0;
   double energy_in_winding_j = 0;  ///< Heat in the winding.
-  double max_current_a = 0;        ///< Largest magnitude.
+  double max_current_a = 0;        ///< Largest magnitude of the winding current.
   double max_winding_temperature_c = 0;
 };
 
@@ -145,7 +145,7 @@ std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* pl
 /// `step_s`.
 double LongestStep(const ExperimentSpec& experiment);
 
-/// Adds a warning if `step_s` is longer than the shortest of these periods.
+/// Adds a warning if `step_s` is longer than the shortest period of these ticks.
 void WarnOfStep(const ExperimentSpec& experiment, Diagnostics& out);
 
 /// Returns false and adds an error for each pattern of the experiment that selects no existing

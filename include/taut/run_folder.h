@@ -3,7 +3,7 @@
 /// files contain the id of the run, and readers reject files of different runs. The previous run
 /// remains complete until the new trace has its first row on the disk and replaces the old one.
 /// Then the other old files are removed, the summary first, and inputs.yaml is replaced last. If a
-/// writer is killed during this, the next reader or writer completes it.
+/// writer is killed during this replacement, the next reader or writer completes it.
 ///
 /// Threads: only one thread at a time may use a `RunFolder`. Any number may call the functions
 /// concurrently.
@@ -56,7 +56,7 @@ class RunFolder {
 
   /// Begins the run. Removes the files of the previous run, the summary first, except `traces`,
   /// which already belong to this run. Then publishes inputs.yaml if it was prepared; logs of a
-  /// robot have none. On failure, returns false and adds an error.
+  /// robot have no inputs.yaml. On failure, returns false and adds an error.
   bool Begin(Diagnostics& out, const std::vector<std::string>& traces = {});
 
   /// Returns a writer that begins the run when `last` has its first row, so that the previous run

@@ -46,11 +46,11 @@ Pose SwungBy(const ModelDef& def, const Shape& shape, double amplitude, double s
 bool WriteShapeRun(const std::string& folder, const ExperimentSpec& experiment, const Shape& shape,
                    const ShapeLook& look, Diagnostics& out);
 
-/// Writes such a folder below `folder` for each mode ("mode_1", ...; at most `most_modes`),
-/// mechanism ("mechanism_1", ...) and state of self-stress ("self_stress_1", ...). Rigid motions
-/// are omitted. Trace metadata contain index and count; for motions also the relative amplitude,
-/// for modes frequency and slowdown. Tensions of a self-stress are in percent of the largest.
-/// Returns the written folders.
+/// Writes a run folder as `WriteShapeRun` does, below `folder`, for each mode ("mode_1", ...; at
+/// most `most_modes`), mechanism ("mechanism_1", ...) and state of self-stress ("self_stress_1",
+/// ...). Rigid motions are omitted. Trace metadata contain index and count; for motions also the
+/// relative amplitude, for modes frequency and slowdown. Tensions of a self-stress are in percent
+/// of the largest. Returns the written folders.
 std::vector<std::string> WriteShapeRuns(const std::string& folder, const ExperimentSpec& experiment,
                                         const Modes& modes, const ForceAnalysis& forces,
                                         int most_modes, const ShapeLook& look, Diagnostics& out);

@@ -1,5 +1,5 @@
-/// Simulation of an experiment with its start, controllers, sensors and events, in one or many
-/// worlds. A program can step, read and command it.
+/// Simulation of an experiment with its start, controllers, sensors and events. A program can step,
+/// read and command its one or many worlds.
 ///
 ///   taut::Diagnostics found;
 ///   const auto sim = taut::Simulation::Load("experiments/push_20n.yaml", {}, {}, found);
@@ -8,7 +8,8 @@
 ///   std::printf("%g N\n", sim->Cable("outer_right_1").tension_n);
 ///
 /// While the program changes nothing, the results of a world are bit-identical to `RunExperiment`
-/// (taut/run.h). Other worlds, the number of threads and the instruction set have no effect.
+/// (taut/run.h). Other worlds, the number of threads and the instruction set do not affect these
+/// results.
 ///
 /// Related classes: `WorldBatch` (taut/world_batch.h) steps a model without controllers and events.
 /// `Rollouts` (taut/rollout.h) score many variants from start to end. `Env` (taut/env.h) is a
@@ -74,8 +75,9 @@ class ElementRef {
 /// Errors: a nonexistent name or index is a programming error. The function prints it and the most
 /// similar name to stderr and calls abort(). For names from users, call the functions of
 /// taut/find.h, which return errors. Rest lengths, gains, forces, body states and values in
-/// `commands` must be finite. Others are rejected: the previous value remains, and until `Reset` or
-/// `Restore`, `IsRunning` of the world returns false and `StatusText` contains the name.
+/// `commands` must be finite. A value that is not finite is rejected: the previous value remains.
+/// Until `Reset` or `Restore`, `IsRunning` of the world then returns false and `StatusText`
+/// describes the first rejected value.
 ///
 /// Threads: a simulation has an internal thread pool. All functions, including const ones, need
 /// exclusive access. Simulations are independent of each other.
@@ -121,7 +123,7 @@ class Simulation {
   Vec3 NodeVelocity(const ElementRef& node, int world = 0) const;
   JointState Joint(const ElementRef& joint, int world = 0) const;
   MotionState Motion(const ElementRef& motion, int world = 0) const;
-  /// Only for cables with a `dc_motor`.
+  /// Returns the state of a cable's motor. Only for cables with a `dc_motor`.
   MotorState Motor(const ElementRef& cable, int world = 0) const;
   Energy TotalEnergy(int world = 0) const;
   std::vector<ContactState> Contacts(int world = 0) const;
@@ -129,13 +131,13 @@ class Simulation {
   /// Returns a description of the status and of the first rejected command, with the names of the
   /// affected body and cable. Empty without problems.
   std::string StatusText(int world = 0) const;
-  /// Equal to `RunSummary::state_hash` after the same run.
+  /// Returns the hash of the state; equal to `RunSummary::state_hash` after the same run.
   std::uint64_t Hash(int world = 0) const;
 
   // --- commands ----------------------------------------------------------------------------------
-  /// Commands the rest length [m] of a cable. A position controller of the cable then holds it
-  /// instead of following its program. Other controllers of the cable overwrite it at their next
-  /// tick.
+  /// Commands the rest length [m] of a cable. From this call on, a position controller of the cable
+  /// holds this length instead of following its program. Other controllers of the cable overwrite
+  /// it at their next tick.
   void SetRestLength(const ElementRef& cable, double rest_length_m, int world = 0);
   double RestLengthCommand(const ElementRef& cable, int world = 0) const;
   void SetMode(const ElementRef& cable, CommandMode mode, int world = 0);

@@ -21,7 +21,7 @@ namespace taut {
 struct CableDemand {
   std::string cable;
   bool actuated = false;
-  double peak_force_n = 0, rms_force_n = 0;  ///< Tension.
+  double peak_force_n = 0, rms_force_n = 0;  ///< Peak and RMS of the tension.
   /// Speed of the rest length, in both directions.
   double peak_speed_m_per_s = 0, rms_speed_m_per_s = 0;
   double peak_power_w = 0;    ///< Largest product of tension and winding-in speed.
@@ -48,7 +48,7 @@ std::optional<RunDemand> DemandOf(const Trace& trace, const ExperimentSpec& expe
                                   const std::string& path, Diagnostics& out);
 
 /// Returns the demand of the run in a folder, from its trace.h5, inputs.yaml and, if it exists,
-/// summary.json. If they cannot be read or lack data, returns nothing and adds errors.
+/// summary.json. If a file cannot be read or lacks data, returns nothing and adds errors.
 std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out);
 
 /// Available value of a motor or spring divided by the demand of a cable; infinite without demand.
@@ -68,12 +68,12 @@ struct SizingMargins {
   double spool_turns = 0;    ///< Motors: turns of the spool for `wound_m`.
 };
 
-/// Evaluates a motor with a spool of this radius [m] for a cable. It fits if all margins are at
-/// least `factor`.
+/// Evaluates a motor with a spool of this radius [m] for a cable. The motor fits if all margins are
+/// at least `factor`.
 SizingMargins SizingMarginsOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
                               const CableDemand& cable);
-/// Evaluates a spring in series with an inextensible cable. It fits if all margins are at least
-/// `factor` and the relative difference of its stiffness from the cable's is at most
+/// Evaluates a spring in series with an inextensible cable. The spring fits if all margins are at
+/// least `factor` and the relative difference of its stiffness from the cable's is at most
 /// `stiffness_tolerance`.
 SizingMargins SizingMarginsOf(const CatalogueSpring& spring, double factor,
                               double stiffness_tolerance, const CableDemand& cable);

@@ -37,7 +37,7 @@ using Tags = std::vector<std::string>;
 
 /// Mass of a rod, sphere or box, as defined by its builder.
 struct SolidMass {
-  enum class Per { kWhole, kVolume, kLength };  ///< [kg], [kg/m^3], [kg/m]
+  enum class Per { kWhole, kVolume, kLength };  ///< `value` in kg, kg/m^3, kg/m.
   Per per = Per::kWhole;
   double value = 0.0;
 };
@@ -85,7 +85,7 @@ struct FileHead {
   std::string kind, name, description;  ///< Empty if missing.
 };
 
-/// Reads the head of a file of any kind. If it is not valid YAML, returns nothing and adds an
+/// Reads the head of a file of any kind. If the file is not valid YAML, returns nothing and adds an
 /// error.
 std::optional<FileHead> ReadFileHead(const std::string& path, Diagnostics& out);
 
@@ -95,7 +95,8 @@ struct ClockSpec {
   double phase_s = 0.0;
 };
 
-/// Gains of a cable under impedance control (paper eq. 3). Lengthening is positive.
+/// Gains of a cable under impedance control (Mirletz et al. 2015, eq. 3). Rates are positive while
+/// the cable lengthens.
 struct ImpedanceGains {
   int cable = 0;
   double tension_offset_n = 0.0;         ///< T0 >= 0.
@@ -108,8 +109,8 @@ struct ImpedanceGains {
 /// Conversion of a tension set point to a rest length command.
 enum class TensionConversion {
   kStiffness,  ///< L = L_now - (T_set - T_now) / k, as in NTRT's tgTensionController.
-  /// A PID controller of the tension commands the rate of the rest length, as on the paper's
-  /// boards.
+  /// A PID controller of the tension commands the rate of the rest length, as on the boards of
+  /// Mirletz et al. 2015.
   kPid,
 };
 
@@ -122,9 +123,9 @@ struct PidGains {
 struct ImpedanceSpec {
   TensionConversion conversion = TensionConversion::kStiffness;
   PidGains pid;
-  /// False: dl/dt is exact. True: difference of the lengths at successive ticks, as on a board or
-  /// in NTRT. `start_from_rest_length`: at the first tick, the rest length is the previous length,
-  /// as in NTRT.
+  /// False: dl/dt is exact. True: difference quotient of the lengths at successive ticks, as on a
+  /// board or in NTRT. `start_from_rest_length`: the first tick uses the rest length as the
+  /// previous length, as in NTRT.
   bool differenced_rate = false;
   bool start_from_rest_length = false;
   std::vector<ImpedanceGains> cables;
@@ -150,8 +151,8 @@ struct GaitInputSpec {
   GaitSpec gait;                    ///< Initial gait.
   std::vector<GaitSpec> others;     ///< Further gaits for the same cables and the same quantity.
   std::vector<GaitChange> changes;  ///< In order of increasing time.
-  /// Duration of a transition between gaits without corresponding oscillators. During it, the
-  /// weight of the previous gait decreases smoothly from 1 to 0.
+  /// Duration of a transition between gaits without corresponding oscillators. During the
+  /// transition, the weight of the previous gait decreases smoothly from 1 to 0.
   double blend_s = 0.5;
 };
 
@@ -160,8 +161,8 @@ inline const GaitSpec& GaitOf(const GaitInputSpec& input, std::size_t number) {
   return number == 0 ? input.gait : input.others[number - 1];
 }
 
-/// Controller: impedance control or position control of cables, optionally with a gait. Or the
-/// motor boards, which run the control law of the other controllers.
+/// Controller: impedance control or position control of cables, optionally with a gait.
+/// Alternatively, the motor boards, which run the control law of the other controllers.
 struct ControllerSpec {
   std::string name;
   ClockSpec clock;
@@ -172,11 +173,12 @@ struct ControllerSpec {
   /// Added to the programs of the cables, or to the initial rest lengths of cables without a
   /// program.
   std::optional<GaitInputSpec> rest_length_input;
-  /// If present, only `name` is also set, and this controller is the last in the list.
+  /// If present, all other members except `name` are empty, and this controller is the last in the
+  /// list.
   std::optional<BoardsSpec> boards;
 };
 
-/// Returns the motor boards among the controllers; null without.
+/// Returns the motor boards among the controllers, or null if there are none.
 const BoardsSpec* BoardsOf(const std::vector<ControllerSpec>& controllers) noexcept;
 
 /// Returns the gait input of a controller, or null; there is at most one.
@@ -189,8 +191,8 @@ inline const GaitInputSpec* GaitInputOf(const ControllerSpec& controller) noexce
   return controller.rest_length_input ? &*controller.rest_length_input : nullptr;
 }
 
-/// Push: force on a node against time. It is linear between points and zero before the first and
-/// after the last.
+/// Push: force on a node against time. The force is linear between points, and zero before the
+/// first and after the last point.
 struct PushSpec {
   std::string name;
   int node = 0;
@@ -239,8 +241,8 @@ struct GoalSpec {
 };
 
 /// Digitization of a load cell on a board: force = gain * count + offset. Counts are integers from
-/// 0, clipped at the saturation of the amplifier and of the converter. Defaults: Tetraspine3 (paper
-/// eq. 7).
+/// 0, clipped at the saturation of the amplifier and of the converter. Defaults: Tetraspine3
+/// (Mirletz et al. 2015, eq. 7).
 struct LoadCellCounts {
   double gain_n_per_count = 0.1567;  ///< > 0.
   double offset_n = -4.9363;         ///< Force at count 0.
@@ -268,7 +270,7 @@ struct LoadCellSpec {
 struct EncoderSpec {
   double quantum_m = 0.0;  ///< Change of the rest length per count; 0: no quantization.
   double delay_s = 0.0;    ///< A whole number of sensor periods.
-  // Standard deviations over the cables, drawn once per run.
+  // Standard deviations of errors over the cables, drawn once per run.
   double zero_error_m = 0.0;  ///< Error of the initial rest length.
   double gain_error = 0.0;    ///< Relative error of the rest length per count [1].
   /// Distance between index marks; 0: none. The first mark corrects the zero error up to a multiple

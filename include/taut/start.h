@@ -23,8 +23,8 @@ bool CheckStart(const RobotSpec& robot, StartKind start, Diagnostics& out);
 
 /// Brings a world to static equilibrium by kinetic damping with fixed rest lengths: all velocities
 /// become 0 at each peak of the kinetic energy, until no node gains more than 1e-9 m/s in a step.
-/// Time does not advance. Returns false after `max_steps`, or if `go_on` returns false; it is
-/// called before every step.
+/// Time does not advance. `go_on` is called before every step. Returns false if `go_on` returns
+/// false, or after `max_steps`.
 bool Settle(WorldBatch& batch, int world, double step_s, const std::function<bool()>& go_on = {},
             int max_steps = 200000);
 
@@ -41,10 +41,10 @@ RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose);
 struct StartChange {
   int taut_cables = 0;                    ///< Number of taut cables in the described pose.
   std::vector<std::string> slack_cables;  ///< Names of cables that settling made slack.
-  /// Largest elastic tension k (l - L) of any cable.
+  /// Largest elastic tension k (l - L) of any cable: settled, and in the described pose.
   double max_tension_n = 0, described_max_tension_n = 0;
-  /// Largest displacement of a node from its described position, without the best common rigid
-  /// motion (least squares).
+  /// Largest displacement of a node from its described position, after subtraction of the rigid
+  /// motion that fits all nodes best (least squares).
   double largest_displacement_m = 0;
   std::string displaced_node;
   /// Twice the largest distance of a node from the center of all nodes, in the described pose.
@@ -63,8 +63,9 @@ struct SettledStart {
 };
 
 /// Returns the settled pose of an experiment that starts `settled` or `settled_floating`, without
-/// its start noise. Returns nothing if there is none, with diagnostics as from `RunExperiment`, or
-/// if `go_on` returns false; it is called repeatedly. Adds the warnings of `WarnOfStart`.
+/// its start noise. Returns nothing if no equilibrium is found (with diagnostics as from
+/// `RunExperiment`), or if `go_on` returns false. `go_on` is called repeatedly. Adds the warnings
+/// of `WarnOfStart`.
 std::optional<SettledStart> FindSettledStart(const ExperimentSpec& experiment, Diagnostics& out,
                                              const std::function<bool()>& go_on = {});
 

@@ -65,11 +65,11 @@ struct StateSpace {
   std::vector<std::string> bodies, cables;  ///< Names in the order of `pose`.
 };
 
-/// Computes the linear system of an experiment. It is not found, with `why` and `hint`, if the
-/// robot does not come to rest, a cable is about to go slack, a contact is about to slip or open,
-/// controllers have different periods, or there are kinematic bodies. Pushes, drags, gaits, sensor
-/// errors and start noise are omitted, with remarks. If the experiment cannot start, adds the same
-/// diagnostics as `RunExperiment`.
+/// Computes the linear system of an experiment. `found` is false, with the reason in `why` and a
+/// remedy in `hint`, if the robot does not come to rest, a cable is about to go slack, a contact is
+/// about to slip or open, controllers have different periods, or there are kinematic bodies.
+/// Pushes, drags, gaits, sensor errors and start noise are omitted, with remarks. If the experiment
+/// cannot start, adds the same diagnostics as `RunExperiment`.
 StateSpace FindStateSpace(const ExperimentSpec& experiment, const LinearOptions& options,
                           Diagnostics& out);
 
@@ -85,7 +85,7 @@ std::vector<LinearMode> ModesOf(const StateSpace& system);
 
 /// Frequency response: steady-state effect of a sinusoidal input on an output.
 struct FrequencyResponse {
-  std::vector<double> frequency_hz, magnitude;  ///< [unit of the output per unit of the input]
+  std::vector<double> frequency_hz, magnitude;  ///< In units of output per unit of input.
   std::vector<double> phase_rad;                ///< Phase lead of the output, -pi..pi.
 };
 

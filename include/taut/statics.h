@@ -27,15 +27,15 @@ double CableTension(const CableDef& cable);
 /// Loads on a body in the described pose.
 struct BodyLoad {
   Vec3 cable_force_n;     ///< Sum over all cables, in W.
-  Vec3 cable_torque_n_m;  ///< Their torque about the center of mass of the body, in W.
-  Vec3 weight_n;          ///< In W.
+  Vec3 cable_torque_n_m;  ///< Torque of all cables about the center of mass of the body, in W.
+  Vec3 weight_n;          ///< Weight of the body, in W.
 };
 
 /// Returns the loads of each body of `def`, including fixed bodies, whose supports carry them.
 std::vector<BodyLoad> StartLoads(const ModelDef& def);
 
-/// Force and torque of a joint on its body b at `to_m`, in W; its body a gets the opposite. For a
-/// support, this is the reaction on the robot.
+/// Force and torque of a joint on its body b at `to_m`, in W; the opposite acts on its body a. For
+/// a support, this is the reaction on the robot.
 struct JointLoad {
   Vec3 force_n;
   Vec3 torque_n_m;  ///< About `to_m`.
@@ -52,8 +52,8 @@ inline constexpr std::size_t kMostHeldDirections = 2000;
 /// limits are ignored. Empty if joints constrain more than kMostHeldDirections directions.
 std::vector<JointLoad> StartJointLoads(const ModelDef& def);
 
-/// Resultant of cables, weight and joint loads. It accelerates a moving body; for a fixed body, its
-/// support carries it.
+/// Resultant of cables, weight and joint loads. The resultant accelerates a moving body; the
+/// support of a fixed body carries it.
 struct LeftLoad {
   Vec3 force_n;     ///< In W.
   Vec3 torque_n_m;  ///< About the center of mass of the body, in W.

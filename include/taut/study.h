@@ -63,8 +63,8 @@ struct CmaEsSpec {
   double deviation = 0.3;  ///< Initial standard deviation, relative to the range of the bounds.
 };
 
-/// Search method with its number of evaluations. It starts from the best candidate of earlier
-/// searches.
+/// Search method with its number of evaluations. The search starts from the best candidate of
+/// earlier searches.
 struct SearchSpec {
   std::variant<MonteCarloSpec, HillClimbingSpec, NloptSpec, CmaEsSpec> method;
   int evaluations = 0;

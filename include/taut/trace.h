@@ -87,13 +87,13 @@ struct Trace {
   std::optional<std::size_t> Find(const std::string& name) const;
 };
 
-/// Adds a warning if the trace is unfinished: "the recorded part is compared". `use`: "compared".
+/// Adds a warning if the trace is unfinished: "the recorded part is compared". `use` is the last
+/// word of this text, such as "compared".
 void WarnIfUnfinished(const Trace& trace, const std::string& path, const std::string& use,
                       Diagnostics& out);
 
 /// Reads `.h5`, `.csv`, `.csv.gz` or `.mcap`. On failure, returns nothing and adds an error. From a
-/// truncated `.h5`, `.csv` or `.mcap`, it returns the rows that are complete. It rejects a
-/// truncated
+/// truncated `.h5`, `.csv` or `.mcap`, it returns the complete rows. It rejects a truncated
 /// `.csv.gz`, links to other files, and files that unpack to far more than their size
 /// (docs/formats/trace.md).
 std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out);
@@ -114,8 +114,8 @@ std::string_view ClockFormatName(ClockFormat format);
 struct TableLayout {
   int skip_lines = 0;  ///< Number of lines before the header, or before the rows without a header.
   int header_lines = 1;  ///< Number of lines with column names, whose cells are joined by blanks.
-  bool merged_header =
-      false;  ///< Except in the last header line, an empty cell repeats the previous cell.
+  /// Except in the last header line, an empty cell repeats the previous cell.
+  bool merged_header = false;
   std::vector<std::string> columns;  ///< Column names that replace those in the header.
   char separator = ',';              ///< A blank stands for any number of blanks.
   char decimal = '.';                ///< Decimal point or comma.
@@ -137,10 +137,10 @@ struct TableLayout {
   std::string value_column;
 };
 
-/// Reads a text table, or the variables of a MATLAB file (v7.3). Channels have the column names and
-/// the unit 1, taut's own channels the unit in their name. Empty cells, `nan` and `NA` are NaN. On
-/// errors, such as cells that are not numbers or times that do not increase, returns nothing and
-/// adds diagnostics with file, line and column.
+/// Reads a text table, or the variables of a MATLAB file (v7.3). Channels get the column names and
+/// the unit 1; channels with the name of a taut channel get the unit in that name. Empty cells,
+/// `nan` and `NA` are NaN. On errors, such as cells that are not numbers or times that do not
+/// increase, returns nothing and adds diagnostics with file, line and column.
 std::optional<Trace> ReadTable(const std::string& path, const TableLayout& layout,
                                Diagnostics& out);
 

@@ -5,7 +5,7 @@
 
 namespace taut {
 
-/// 3-vector. Declarations give its unit and frame.
+/// 3-vector. The declaration of each variable gives its unit and frame.
 struct Vec3 {
   double x = 0.0, y = 0.0, z = 0.0;
   bool operator==(const Vec3&) const = default;

@@ -29,7 +29,7 @@ struct StartNoise {
 
 /// Uniform ranges of random worlds.
 struct VariationSpec {
-  double friction = 0, mass = 0, stiffness = 0, damping = 0;  ///< Factors are within 1 +- this.
+  double friction = 0, mass = 0, stiffness = 0, damping = 0;  ///< Factors: 1 +- this value.
   StartNoise start;
 };
 

@@ -1,7 +1,7 @@
 /// Vectorized simulation of many worlds of one model, without controllers and events. For
 /// experiments, use `Simulation` (taut/simulation.h). Each SIMD lane contains one world; a thread
-/// pool steps groups of lanes. The results of a world are bit-identical for any number of worlds,
-/// lane, number of threads and instruction set (docs/determinism.md).
+/// pool steps groups of lanes. The number of worlds, the lane, the number of threads and the
+/// instruction set do not change any bit of a world's results (docs/determinism.md).
 #pragma once
 
 #include <cstddef>
@@ -29,8 +29,7 @@ class Model {
   /// belongs to an experiment with controllers, events or a settled start, which a `WorldBatch`
   /// ignores.
   static std::shared_ptr<const Model> Compile(const ModelDef& def, Diagnostics& out);
-  /// Same as `Compile` without the warning about controllers and events, for programs that run
-  /// them.
+  /// Same as `Compile`, but without this warning, for programs that run the controllers and events.
   static std::shared_ptr<const Model> CompileForExperiment(const ModelDef& def, Diagnostics& out);
 
   virtual ~Model() = default;
@@ -56,7 +55,7 @@ class ContactFriction;  // taut/friction.h
 struct WorldBatchOptions {
   int worlds = 1;
   int threads = 1;                ///< 0: one per core.
-  std::optional<Simd> simd = {};  ///< Absent: `BestSimd()`; scalar for a single world.
+  std::optional<Simd> simd = {};  ///< Absent: scalar for one world, else `BestSimd()`.
   /// Maximum number of linear solves per island and step. An island that needs more sets
   /// `kStatusNotConverged`.
   int max_linear_solves = 1000;
@@ -73,8 +72,8 @@ enum StatusBits : std::uint32_t {
   kStatusOk = 0,
   kStatusNonFinite = 1u << 0,     ///< A state is NaN or infinite; the world is frozen.
   kStatusNotConverged = 1u << 1,  ///< Contacts or stiff cables were not solved to the tolerance.
-  /// The contact buffer is full. If `cable` is set: this cable touches more edges and rods than it
-  /// can bend around (docs/theory/cables.md, section 6).
+  /// The contact buffer is full. If `WorldStatus::cable` is set instead: the cable touches more
+  /// edges and rods than it can bend around (docs/theory/cables.md, section 6).
   kStatusContactOverflow = 1u << 2,
   /// The step is too long for at least one of: transverse motion under the tension of a cable
   /// (docs/theory/cables.md, eq. 12), the substeps of stiff cables (eq. 12i), a bend that a turning
@@ -110,7 +109,7 @@ struct WorldStatus {
 /// State of a cable at the current time.
 using CableState = CableReadings<double>;
 
-/// Readings of all cables of a group, the worlds that share a SIMD register. Cable c of world
+/// Readings of all cables of a group (the worlds that share a SIMD register). Cable c of world
 /// `first_world + j` is at [c * lanes + j]. The pointers refer to memory of the batch. After a step
 /// or change, call `WorldBatch::Sense` to update the readings.
 struct CableRows : ReadingRows {
@@ -125,9 +124,9 @@ struct CablePoint {
   Vec3 force_n;     ///< Force of the cable on the body at this point, in W.
 };
 
-/// State of a cable span: part of a cable between points with friction, or to an end.
+/// State of a cable span: part of a cable between successive points with friction or ends.
 struct CableSpanState {
-  double length_m = 0;       ///< Includes half of the arcs at both ends.
+  double length_m = 0;       ///< Includes half of the wrapped arc at each end.
   double rest_length_m = 0;  ///< The sum over all spans is the rest length of the cable.
   double tension_n = 0;      ///< Average over the last step.
 };
@@ -145,7 +144,7 @@ struct Energy {
 
 /// Contact point of the last step.
 struct ContactState {
-  int body_a = 0, body_b = kWorld;  ///< The force acts on A; B gets the opposite.
+  int body_a = 0, body_b = kWorld;  ///< `force_n` acts on A, its opposite on B.
   Vec3 point_m, normal;             ///< In W; normal points from B to A.
   Vec3 force_n;                     ///< On A, in W.
   double gap_m = 0;
@@ -174,18 +173,18 @@ struct Overlap {
   double depth_m = 0;  ///< Penetration depth, > 0.
   /// Half the thickness of the thinner shape: its radius, half the smallest edge of a box, or the
   /// distance from the center of a hull to its nearest face. If `b` is a plane: half the thickness
-  /// of `a`. At a larger depth, contacts may push the shapes apart on the wrong side.
+  /// of `a`. If `depth_m` is larger, contacts may push the shapes apart on the wrong side.
   double half_thickness_m = 0;
 };
 
 /// State of a joint at the current time. Forces are from the last step.
 struct JointState {
-  double coordinate = 0;  ///< See `JointDef` [rad] or [m]; 0 without a coordinate.
-  double rate = 0;        ///< [rad/s] or [m/s]
-  Vec3 force_n;           ///< On body b at its joint point, in W.
-  Vec3 torque_n_m;        ///< On body b, about that point, in W.
-  /// Largest violation of the joint's constraints. Rotations count as angle times the radius of
-  /// gyration of the bodies.
+  double coordinate = 0;  ///< Defined at `JointDef` [rad] or [m]; 0 if the joint has none.
+  double rate = 0;        ///< Time derivative of `coordinate` [rad/s] or [m/s].
+  Vec3 force_n;           ///< Force of the joint on body b at b's joint point, in W.
+  Vec3 torque_n_m;        ///< Torque of the joint on body b about that point, in W.
+  /// Largest violation of the joint's constraints, as a length. A rotation error is multiplied by
+  /// the radius of gyration of the bodies.
   double gap_m = 0;
   double turned_rad = 0;  ///< Rotation angle of b relative to a since the described pose, 0..pi.
 };
@@ -195,18 +194,18 @@ struct JointState {
 struct MotionState {
   double slide_m = 0, slide_rate_m_per_s = 0;
   double turn_rad = 0, turn_rate_rad_per_s = 0;
-  // Force and torque that the motion exerts against all other forces on the body, in W. The body's
-  // weight and inertia are not included.
+  // Force and torque of the motion on the body, against all other forces on the body, in W. The
+  // body's weight and inertia are not included.
   Vec3 force_n;
   Vec3 torque_n_m;    ///< About the body's origin (`BodyDef::com_m`).
   double work_j = 0;  ///< Work of the motion on the other bodies since the start.
 };
 
-/// Parameters that `SetParameter` changes per world. `index`: a body, a cable or 0.
+/// Parameters that `SetParameter` changes per world. The argument `index` is a body, a cable or 0.
 enum class Parameter {
-  kBodyMass,        ///< [kg]; the inertia is scaled with it.
-  kCableStiffness,  ///< [N/m]
-  kCableDamping,    ///< [N s/m]
+  kBodyMass,        ///< Mass of a body [kg]; its inertia is scaled by the same factor.
+  kCableStiffness,  ///< Stiffness k of a cable [N/m].
+  kCableDamping,    ///< Damping coefficient b of a cable [N s/m].
   kFrictionScale,   ///< Factor on all friction coefficients of the world [1]; index 0.
   kGravityX,        ///< Gravity along x, y and z [m/s^2], in W; index 0.
   kGravityY,
@@ -233,11 +232,11 @@ class WorldBatch {
   int worlds() const noexcept;
   int lanes() const noexcept;
 
-  /// Advances every world by `count` steps of `step_s`. Allocates no memory.
+  /// Advances every world by `count` steps of `step_s` [s]. Allocates no memory.
   void Step(double step_s, int count = 1) noexcept;
   /// Sets the rest length targets [m] of all cables of all worlds, cable c of world w at [w *
-  /// cables + c]. Then it advances every world by `count` steps of `step_s`. The threads that step
-  /// the worlds also set the targets in parallel, in contrast to separate calls of
+  /// cables + c]. Then advances every world by `count` steps of `step_s`. The threads that step the
+  /// worlds also set the targets in parallel, in contrast to separate calls of
   /// `SetRestLengthTarget`.
   void Step(double step_s, int count, std::span<const double> rest_length_targets_m) noexcept;
 
@@ -256,13 +255,13 @@ class WorldBatch {
   void SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept;
   double RestLengthTarget(int world, int cable) const noexcept;
   /// Sets the duty of a cable's motor: fraction of the supply voltage, clipped to -1..1; positive
-  /// winds in. NaN halts the world. The motor then ignores rest length targets until
+  /// winds in. NaN halts the world. From this call on, the motor ignores rest length targets until
   /// `SetRestLengthTarget` for this cable reactivates its servo. Functions that set targets of many
-  /// cables do not reactivate it. In this and the next two functions, a cable without a `dc_motor`
-  /// counts as an index out of range.
+  /// cables do not reactivate the servo. In this and the next two functions, a cable without a
+  /// `dc_motor` counts as an index out of range.
   void SetDuty(int world, int cable, double duty) noexcept;
-  /// Switches the motor driver on (initial state) or off. While it is off, no current flows at any
-  /// duty or target, and friction decelerates the motor.
+  /// Switches the motor driver on (initial state) or off. While the driver is off, no current flows
+  /// at any duty or target, and friction decelerates the motor.
   void SetMotorEnabled(int world, int cable, bool enabled) noexcept;
   MotorState Motor(int world, int cable) const noexcept;
   /// Sets the force on a node [N], in W, for all following steps.
@@ -272,12 +271,13 @@ class WorldBatch {
   // --- observation -------------------------------------------------------------------------
   CableState Cable(int world, int cable) const noexcept;
   /// Returns the number of spans of a cable: parts between points with friction, with possibly
-  /// different tensions. For a `touches` cable with friction: the largest possible number; all
-  /// values of spans beyond CableBends() + 1 are 0.
+  /// different tensions. For a cable with friction that wraps around obstacles (`touches`), returns
+  /// the largest possible number; all values of spans beyond CableBends() + 1 are 0.
   int CableSpans(int cable) const noexcept;
   CableSpanState CableSpan(int world, int cable, int span) const noexcept;
-  /// Returns the tensions [N] of the present spans of a cable, from its first end. There is one
-  /// more span than CableBendPlaces(), or than points with friction on the path.
+  /// Returns the tensions [N] of the present spans of a cable, from its first end. The number of
+  /// spans is one more than the number of CableBendPlaces(), or of points with friction on the
+  /// path.
   std::vector<double> CableSpanTensions(int world, int cable) const;
   /// Returns the energy dissipated by friction along a cable since the start [J].
   double CableFrictionLoss(int world, int cable) const noexcept;
@@ -312,24 +312,24 @@ class WorldBatch {
   Vec3 AngularMomentum(int world) const noexcept;       ///< About the origin of W [kg m^2/s].
   std::vector<ContactState> Contacts(int world) const;  ///< Of the last step.
   /// Returns the overlaps in the current pose. For each pair of bodies, and for each body and
-  /// plane, it is the overlap with the largest ratio of depth to half thickness.
+  /// plane, the list contains only the overlap with the largest ratio of depth to half thickness.
   std::vector<Overlap> Overlaps(int world) const;
 
   // --- state -------------------------------------------------------------------------------
-  /// Sets the state of a body. Not for kinematic bodies, whose motion determines their state. With
-  /// joints, the next step first projects the velocities onto the joint constraints
+  /// Sets the state of a body. Not for kinematic bodies, whose motion determines their state. If
+  /// the model has joints, the next step first projects the velocities onto the joint constraints
   /// (docs/theory/joints.md, eq. 7a).
   void SetBodyState(int world, int body, const BodyState& state) noexcept;
   /// Sets the simulated time. Kinematic bodies move to their poses at that time.
   void SetTime(int world, double time_s) noexcept;
   /// Sets the rest length [m] of a cable and its target immediately, ignoring the limits of the
-  /// actuator. A motor stops.
+  /// actuator. If the actuator is a motor, the motor stops.
   void SetRestLength(int world, int cable, double rest_length_m) noexcept;
-  /// Returns why `SetParameter` rejects a value ("must be a positive number [kg], got -1"); empty
-  /// if the value is valid. The limits are the same as in model files. For a fixed body, any mass
-  /// is valid and has no effect.
+  /// Returns the reason why `SetParameter` rejects a value ("must be a positive number [kg], got
+  /// -1"), or an empty text if the value is valid. The limits are the same as in model files. For a
+  /// fixed body, any mass is valid and has no effect.
   std::string ParameterError(Parameter parameter, int index, double value) const;
-  /// Returns false and changes nothing if `ParameterError` returns a reason.
+  /// Sets a parameter. Returns false and changes nothing if `ParameterError` returns a reason.
   bool SetParameter(int world, Parameter parameter, int index, double value) noexcept;
   double GetParameter(int world, Parameter parameter, int index) const noexcept;
 

@@ -38,8 +38,8 @@ enum class Mode : uint8_t {
 
 constexpr float kSpeedUnit_m_per_s = 2e-5f;
 
-/// Arming in two steps: a broadcast with kReady in mode kOff without faults, then one with kGo.
-/// Motors have power only after both.
+/// Arming in two steps: a broadcast with kReady in mode kOff without faults, then a broadcast with
+/// kGo. Motors have power only after both broadcasts.
 enum class Arm : uint8_t { kNot = 0, kReady = 1, kGo = 2 };
 
 /// Cyclic broadcast to all boards, 29 bytes.

@@ -8,7 +8,8 @@ namespace taut {
 namespace board {
 namespace internal {
 
-/// Table for half bytes: 16 entries. A table for bytes has 256, and an AVR keeps constants in RAM.
+/// Tables for half bytes with 16 entries. Tables for bytes would need 256 entries each in the RAM
+/// of an AVR.
 constexpr uint16_t kCrc16[16] = {0x0000, 0x1021, 0x2042, 0x3063, 0x4084, 0x50a5, 0x60c6, 0x70e7,
                                  0x8108, 0x9129, 0xa14a, 0xb16b, 0xc18c, 0xd1ad, 0xe1ce, 0xf1ef};
 constexpr uint8_t kCrc8[16] = {0x00, 0x07, 0x0e, 0x09, 0x1c, 0x1b, 0x12, 0x15,

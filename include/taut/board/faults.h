@@ -1,4 +1,4 @@
-/// Fault bits of a board and its motors. They stay set until they are cleared.
+/// Fault bits of a board and its motors. The bits stay set until they are cleared.
 #pragma once
 
 #include <stdint.h>
@@ -6,8 +6,8 @@
 namespace taut {
 namespace board {
 
-/// Faults of a motor. The motor then brakes (duty 0), and the other motor of the board holds its
-/// position.
+/// Faults of a motor. A motor with a fault brakes (duty 0), and the other motor of the board holds
+/// its position.
 enum MotorFault : uint8_t {
   /// Five successive tension readings above the limit. The motor unwinds until the tension is below
   /// the limit minus `kTensionBand`.

@@ -1,6 +1,6 @@
 /// Motor control loop of a board at 1 kHz. It evaluates the load cell and the encoder and computes
-/// the duty with the control laws of include/taut/control (paper section III). Freestanding C++14;
-/// float arithmetic gives the same bits on an AVR and on a PC.
+/// the duty with the control laws of include/taut/control (Mirletz et al. 2015, section III).
+/// Freestanding C++14; float arithmetic gives the same bits on an AVR and on a PC.
 #pragma once
 
 #include <stdint.h>
@@ -63,13 +63,13 @@ struct MotorLoop {
   uint16_t encoder = 0;         ///< Last reading, modulo 2^16.
   int16_t step = 0;             ///< Encoder counts since the previous tick.
   int32_t counts = 0;           ///< Relative to the reference position; winding in is positive.
-  float tension_counts = 0.0f;  ///< Filtered.
+  float tension_counts = 0.0f;  ///< Filtered load cell reading [ADC counts].
   // only for impedance control; other modes skip its computation
-  float counts_per_tick = 0.0f;  ///< Filtered.
+  float counts_per_tick = 0.0f;  ///< Filtered encoder rate.
   float tension_n = 0.0f, rest_length_m = 0.0f, length_m = 0.0f, rate_m_per_s = 0.0f;
   // commanded
   int32_t target_counts = 0;
-  float velocity_input_m_per_s = 0.0f;  ///< V0.
+  float velocity_input_m_per_s = 0.0f;  ///< V0 of impedance control.
   float drive_input = 0.0f;
   control::Impedance<float> gains{};  ///< Effective gains; they follow the parameters slowly.
   // results
@@ -99,9 +99,9 @@ inline float Tension(const float* p, const MotorLoop& motor) noexcept {
   return (motor.tension_counts - p[kCountsAtZero]) * p[kNewtonsPerCount];
 }
 
-/// Computes length, rate and tension for impedance control. Position control skips this ("consumes
-/// additional computational time", paper). The rate is the rate of the rest length, because the
-/// load cell cannot resolve the rate of the spring's extension.
+/// Computes length, rate and tension for impedance control. Position control skips this computation
+/// to save time on the chip. The rate is the rate of the rest length, because the load cell cannot
+/// resolve the rate of the spring's extension.
 inline void SenseCable(const float* p, const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   control::StepLowPass(motor.counts_per_tick, static_cast<float>(motor.step), p[kRateShare]);
   motor.rate_m_per_s = motor.counts_per_tick * numbers.speed_per_count_m_per_s;
@@ -138,7 +138,7 @@ inline void StepPosition(const LoopNumbers& numbers, MotorLoop& motor) noexcept 
                                         DriveLimits(numbers, motor), control::Windup::kHeld);
 }
 
-/// Computes the tension set point from the impedance law (paper eq. 3).
+/// Computes the tension set point from the impedance law (Mirletz et al. 2015, eq. 3).
 inline void FindSetPoint(MotorLoop& motor) noexcept {
   motor.set_point_n = control::ImpedanceTension(motor.gains, motor.length_m, motor.rate_m_per_s,
                                                 motor.velocity_input_m_per_s);
@@ -146,7 +146,7 @@ inline void FindSetPoint(MotorLoop& motor) noexcept {
 
 /// Starts impedance control from the present drive (bumpless transfer). With `capture`, L0 and T0
 /// become the measured length and tension, also in the parameters. T0 is clamped to its range, so a
-/// higher tension decreases to it.
+/// higher tension decreases to the upper limit of T0.
 inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
                            MotorLoop& motor) noexcept {
   motor.counts_per_tick = 0.0f;  // otherwise one count of a holding motor would count as 13 mm/s

@@ -146,9 +146,9 @@ inline Answer Ask(Board& board, const Asking& asking, uint8_t (&payload)[11]) no
 
 }  // namespace internal
 
-/// Processes a complete message from the bus, between ticks. `to_all`: whether it was sent to the
-/// general-call address, like broadcasts and emergency stops. Requests go to the address of one
-/// board.
+/// Processes a complete message from the bus, between ticks. `to_all`: whether the message was sent
+/// to the general-call address, like broadcasts and emergency stops. Requests go to the address of
+/// one board.
 inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board) noexcept {
   if (!to_all) {
     Asking asking;

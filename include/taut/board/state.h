@@ -42,7 +42,7 @@ struct Boot {
 struct Counters {
   uint16_t bad_messages = 0;  ///< Messages with a wrong checksum, size or content.
   uint16_t overruns = 0;      ///< Timer ticks during which the previous tick was still running.
-  uint16_t missed = 0;        ///< Number of times that no broadcast came for kFreezeTicks.
+  uint16_t missed = 0;        ///< Number of times that no broadcast arrived for kFreezeTicks.
   uint16_t recoveries = 0;    ///< Restarts of the I2C bus.
 };
 

@@ -53,9 +53,9 @@ inline bool Needs(Mode mode, bool capture) noexcept {
   return mode == Mode::kPosition || (mode == Mode::kImpedance && !capture);
 }
 
-/// Applies the last broadcast if it is permitted. Returns true if a new control law starts. It
-/// computes its first duty in the next tick; until then the duties stay the same, and no work
-/// remains in this tick.
+/// Applies the last broadcast if it is permitted. Returns true if a new control law starts. The new
+/// law computes its first duty in the next tick. Until that tick, the duties do not change, and
+/// this tick needs no further work.
 inline bool Apply(Board& board) noexcept {
   const Command& command = board.command;
   board.command_due = false;
@@ -79,7 +79,7 @@ inline bool Apply(Board& board) noexcept {
     board.armed = true;
     board.ready = false;
   }
-  // The reaction to a fault, timeout or stop continues until it is cleared.
+  // The reaction to a fault, timeout or stop continues until a broadcast clears the cause.
   if (!IsHealthy(board)) return false;
   if (Needs(command.mode, command.capture) && board.mode != command.mode &&
       !(board.referenced[0] && board.referenced[1])) {

@@ -8,8 +8,8 @@ namespace control {
 
 /// Clock with ticks k = 0, 1, 2, ... at (docs/theory/control.md, eq. K.1)
 ///   t_k = phase + k period     [s]
-/// The product does not drift: after 1e7 ticks of 1 ms it is off by one rounding error, but a sum
-/// of doubles by 1.6e-3 periods.
+/// The product does not drift: after 1e7 ticks of 1 ms, its error is one rounding error; the error
+/// of a sum of doubles is 1.6e-3 periods.
 ///
 /// On a PC, `Time` is double. A microcontroller counts timer interrupts instead of using this
 /// class, since a float cannot resolve milliseconds after four and a half hours.
@@ -49,7 +49,7 @@ constexpr int64_t FirstTickFrom(const Clock<Time>& clock, Time t_s) noexcept {
 }  // namespace internal
 
 /// Returns the first tick at or after `t_s`. A tick up to kTickTolerance periods before `t_s`
-/// counts as at `t_s`.
+/// counts as a tick at `t_s`.
 template <class Time>
 constexpr int64_t TickAtOrAfter(const Clock<Time>& clock, Time t_s) noexcept {
   return internal::FirstTickFrom(clock, t_s - kTickTolerance<Time> * clock.period_s);

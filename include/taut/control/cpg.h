@@ -18,9 +18,9 @@ namespace control {
 /// Law of one oscillator. Parameters may change at any time; phase and amplitude stay smooth.
 template <class Real>
 struct CpgLaw {
-  Real frequency_hz;       ///< v: frequency of the uncoupled oscillator.
-  Real amplitude_m_per_s;  ///< R >= 0: target amplitude.
-  Real convergence_per_s;  ///< a > 0: rate of convergence to R.
+  Real frequency_hz;       ///< Frequency v of the uncoupled oscillator.
+  Real amplitude_m_per_s;  ///< Target amplitude R >= 0.
+  Real convergence_per_s;  ///< Rate a > 0 of convergence to R.
 };
 
 /// Coupling from oscillator `from` to oscillator `to`. Use `MakeCoupling` to create it.
@@ -43,9 +43,9 @@ constexpr CpgCoupling<Real> MakeCoupling(uint16_t to, uint16_t from, Real weight
 /// State of one oscillator.
 template <class Real>
 struct CpgState {
-  Real phase_turns;              ///< theta, -1/2..1/2.
-  Real amplitude_m_per_s;        ///< r.
-  Real amplitude_rate_m_per_s2;  ///< dr/dt.
+  Real phase_turns;              ///< Phase theta, -1/2..1/2.
+  Real amplitude_m_per_s;        ///< Amplitude r.
+  Real amplitude_rate_m_per_s2;  ///< Time derivative dr/dt.
 };
 
 /// Returns the initial state: all 0.

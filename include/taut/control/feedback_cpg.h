@@ -21,25 +21,25 @@ namespace control {
 /// Parameters of one oscillator and gains of its sensor feedback.
 template <class Real>
 struct FeedbackCpgLaw {
-  Real amplitude;                ///< R >= 0 [m/s] or [m]: amplitude without feedback.
-  Real convergence_per_s;        ///< a > 0.
-  Real frequency_gain_hz_per_s;  ///< k_f.
-  Real amplitude_gain;           ///< k_a.
-  Real phase_gain_turns_per_s;   ///< k_p.
+  Real amplitude;                ///< Amplitude R >= 0 without feedback [m/s] or [m].
+  Real convergence_per_s;        ///< Rate a > 0 of convergence.
+  Real frequency_gain_hz_per_s;  ///< Gain k_f of the frequency.
+  Real amplitude_gain;           ///< Gain k_a of the amplitude.
+  Real phase_gain_turns_per_s;   ///< Gain k_p of the phase.
 };
 
 /// Feedback from a neural network (network.h) to one oscillator; each value is -1..1.
 template <class Real>
 struct CpgFeedback {
-  Real frequency, amplitude, phase;  ///< f_f, f_a, f_p.
+  Real frequency, amplitude, phase;  ///< Outputs f_f, f_a, f_p of the network.
 };
 
 /// State of one oscillator.
 template <class Real>
 struct FeedbackCpgState {
-  Real phase_turns;   ///< theta, -1/2..1/2.
-  Real relative;      ///< rho = r / R; a value of 0 stays 0.
-  Real frequency_hz;  ///< v.
+  Real phase_turns;   ///< Phase theta, -1/2..1/2.
+  Real relative;      ///< Relative amplitude rho = r / R; a value of 0 stays 0.
+  Real frequency_hz;  ///< Frequency v.
 };
 
 /// Returns an initial state with the full amplitude; an amplitude of 0 could not grow.

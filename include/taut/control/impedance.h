@@ -1,5 +1,5 @@
 /// Impedance control of one cable: tension set point from length and rate, and two methods to reach
-/// it, by the cable's stiffness and by a PID controller.
+/// this set point, by the cable's stiffness and by a PID controller.
 ///
 /// Sources: Mirletz, Park, Quinn, SunSpiral, "Towards bridging the reality gap between tensegrity
 /// simulation and robotic hardware", IROS 2015, eq. 3; NTRT's tgImpedanceController and
@@ -15,16 +15,16 @@ namespace control {
 /// Gains and offsets of one cable, all >= 0.
 template <class Real>
 struct Impedance {
-  Real tension_offset_n;         ///< T0 [N].
-  Real length_offset_m;          ///< L0 [m].
-  Real position_gain_n_per_m;    ///< K [N/m].
-  Real velocity_gain_n_s_per_m;  ///< B [N s/m].
+  Real tension_offset_n;         ///< Tension offset T0.
+  Real length_offset_m;          ///< Length offset L0.
+  Real position_gain_n_per_m;    ///< Position gain K.
+  Real velocity_gain_n_s_per_m;  ///< Velocity gain B.
 };
 
 /// Returns the tension set point [N] (paper eq. 3, docs/theory/control.md eq. K.2):
 ///   T = max(0, T0 + K (L - L0) + B (V - V0))
 /// L [m] is the cable's length and V [m/s] its rate; lengthening is positive. V0 [m/s] is the
-/// velocity input of a gait, such as a sine or an oscillator. V0 = 0 holds still.
+/// velocity input of a gait, such as a sine or an oscillator. With V0 = 0, the cable holds still.
 ///
 /// The lower bound 0 is not in the paper but in its simulator; a cable cannot push.
 template <class Real>
@@ -40,7 +40,7 @@ constexpr Real ImpedanceTension(const Impedance<Real>& law, Real length_m, Real 
 ///   L' = max(floor, L - (T_set - T) / k)
 /// An ideal taut cable reaches the set point in one tick. A slack cable (T = 0) winds in by T_set /
 /// k per tick. Source: NTRT's tgTensionController, with its constant floor of 0.1 length units as
-/// an argument. There, `tension_n` is the elastic tension k (l - L); a measured tension includes
+/// an argument. In NTRT, `tension_n` is the elastic tension k (l - L); a measured tension includes
 /// the damping.
 template <class Real>
 constexpr Real TensionToRestLengthByStiffness(Real rest_length_m, Real tension_n, Real set_point_n,
@@ -51,7 +51,7 @@ constexpr Real TensionToRestLengthByStiffness(Real rest_length_m, Real tension_n
 /// Returns the rate of the rest length [m/s] from a PID controller of the tension error (eq. K.7):
 ///   dL/dt = -PID(T_set - T)
 /// If the tension is too low, the rate is negative (winding in). Gains: proportional in m/s per N,
-/// integral and derivative in this unit per second and times seconds.
+/// integral in this unit per second, derivative in this unit times seconds.
 ///
 /// According to the paper, its boards run a PID every millisecond. The paper specifies neither the
 /// gains nor the output quantity. taut assumes a winding rate as output, since a DC motor at a

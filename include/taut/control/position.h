@@ -40,8 +40,8 @@ constexpr Real RestLengthAt(const ProgramPoint<Real, Time>* points, size_t count
 }
 
 /// Returns the rate of the rest length [m/s] from a PID controller of the rest length error,
-/// limited to +-`max_speed_m_per_s` (eq. K.11). For boards that can command only a winding rate.
-/// The paper gives no gains; taut assumes them.
+/// limited to +-`max_speed_m_per_s` (eq. K.11). Used on boards that can command only a winding
+/// rate. The gains are assumptions of taut; the paper contains none.
 template <class Real>
 constexpr Real RestLengthByPid(const Pid<Real>& pid, PidState<Real>& state, Real rest_length_m,
                                Real set_point_m, Real period_s, Real max_speed_m_per_s,

@@ -19,8 +19,8 @@ constexpr DifferenceState<Real> StartDifference(Real length_m) noexcept {
 }
 
 /// Returns an initial state with which the first tick returns (length - rest length) / period, as
-/// in NTRT. There, the previous length of a cable starts as its rest length: a jump of centimeters
-/// in a millisecond.
+/// in NTRT. In NTRT, the previous length of a cable starts as its rest length, a jump of
+/// centimeters in a millisecond.
 template <class Real>
 constexpr DifferenceState<Real> StartDifferenceAtRestLength(Real rest_length_m) noexcept {
   return DifferenceState<Real>{rest_length_m};

@@ -1,4 +1,5 @@
-/// Sine wave as velocity input of impedance control, as in the paper's hand-tuned gait.
+/// Sine wave as velocity input of impedance control, as in the hand-tuned gait of Mirletz et al.
+/// 2015.
 #pragma once
 
 #include "taut/control/real.h"

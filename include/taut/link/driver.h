@@ -5,7 +5,7 @@
 ///
 /// Lifecycle: `Configure` identifies and configures the boards without moving motors. Cycles then
 /// update sensor values. `Arm` and, one cycle later, `Go` give motors power; `Off` and `Stop`
-/// remove it. The destructor stops motors that have power.
+/// remove the power. The destructor stops motors that have power.
 ///
 /// Threads: only one thread at a time may use an object.
 #pragma once
@@ -46,9 +46,9 @@ class Driver {
   // --- before the cycles -----------------------------------------------------------------------
   /// Identifies adapter and boards, sets parameters and reads the scales of the boards' numbers. On
   /// problems, returns false and adds an error for each: no adapter, missing boards, other protocol
-  /// or parameter versions, rejected values. A repeated call restarts the driver. Meanwhile, motors
-  /// with power are turned off, or with kHold keep holding the robot on boards without faults until
-  /// they time out.
+  /// or parameter versions, rejected values. A repeated call restarts the driver. During a repeated
+  /// call, motors with power are turned off. With kHold, motors on boards without faults hold their
+  /// positions instead until these boards time out.
   enum class Meanwhile { kOff, kHold };
   bool Configure(std::span<const Setting> settings, Diagnostics& out,
                  Meanwhile meanwhile = Meanwhile::kOff);
@@ -136,7 +136,7 @@ class Driver {
   int board_count() const { return static_cast<int>(state_.boards.size()); }
   bool FindBoards(Diagnostics& out);
   bool ReadFigures(Diagnostics& out);
-  void FinishCycle();  ///< Otherwise requests would be sent between its frames.
+  void FinishCycle();  ///< Ends the cycle, so that no request comes between its frames.
   void Watch();        ///< Selects a broadcast that neither moves motors nor changes their power.
 
   // driver_cycle.cpp

@@ -62,8 +62,8 @@ std::string BoardFaultNames(unsigned bits);
 std::string ResetCauseNames(unsigned bits);
 /// Returns the faults of a board and its motors; empty if there are none.
 std::string FaultsOf(const State& state, int board, const std::vector<std::string>& cables);
-/// Returns the same text, such as "outer_top_1: stall; board: bus_stuck", but "no faults" if there
-/// are none. `cables`: names of the motors' cables.
+/// Returns the text of `FaultsOf`, such as "outer_top_1: stall; board: bus_stuck", or "no faults"
+/// if there are none. `cables`: names of the motors' cables.
 std::string FaultText(const State& state, int board, const std::vector<std::string>& cables);
 /// Returns a description, such as "out of the parameter's range".
 const char* AnswerText(board::Answer answer);

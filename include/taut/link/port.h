@@ -46,8 +46,8 @@ inline void WaitUntil(Port& port, double time_s) {
 enum class PortUse { kDrive, kStop };
 
 /// Opens the serial port of an adapter, such as /dev/ttyACM0, or the pseudo-terminal of a virtual
-/// robot. Returns null and adds an error if it cannot be opened or another program drives the
-/// robot. The error then names that process.
+/// robot. Returns null and adds an error if the port cannot be opened, or if another program drives
+/// the robot. In the second case, the error names the process of that program.
 std::unique_ptr<Port> OpenSerialPort(const std::string& device, PortUse use, Diagnostics& out);
 
 }  // namespace taut::link

@@ -29,7 +29,7 @@ struct PowerReport {
   bool all_off() const;
 };
 
-/// Commands all motors off. Runs cycles until every board has confirmed it, but at most
+/// Commands all motors off. Runs cycles until every board has confirmed the command, but at most
 /// `patience_s`.
 PowerReport TurnOff(Driver& driver, double patience_s);
 

@@ -22,7 +22,7 @@ struct AdapterInfo {
 };
 inline constexpr int kModuleId = 7;
 
-/// Size of a reply; the reply itself does not contain it.
+/// Size of a reply, which the reply itself does not contain.
 struct ReplyShape {
   std::size_t bytes = 1;
   /// I2C_DIRECT: `FF n` and n bytes, or `00 error`; `bytes` is ignored.
@@ -55,7 +55,7 @@ class UsbIss {
   /// wrong state.
   bool SetMode();
   bool Test(std::uint8_t address);  ///< Returns whether a slave at this 7-bit address acknowledges.
-  /// Writes bytes to a slave. Returns whether it acknowledged them.
+  /// Writes bytes to a slave. Returns whether the slave acknowledged all bytes.
   bool Write(std::uint8_t address, std::span<const std::uint8_t> bytes);
   /// Reads bytes from a slave. An absent slave reads as 0xff, which only a checksum detects.
   std::optional<Bytes> Read(std::uint8_t address, std::size_t size);
