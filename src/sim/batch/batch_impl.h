@@ -29,8 +29,8 @@ template <class T>
 using Aligned = std::unique_ptr<T[], Free>;
 
 /// Allocates zeroed memory aligned to a cache line. The operating system provides pages of large
-/// blocks on their first use. So the scratch memory of large models occupies only the part that
-/// their steps use; all of it is needed only if all bodies form one island.
+/// blocks on their first use. Therefore the scratch memory of large models occupies only the part
+/// that their steps use. Steps use all of this memory only if all bodies form one island.
 template <class T>
 Aligned<T> AllocateAligned(std::size_t count) {
   constexpr std::size_t kLine = 64;

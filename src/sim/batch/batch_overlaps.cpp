@@ -49,7 +49,7 @@ double Lowest(const sim::SurfaceShape&, const double*) { return 1e300; }
 
 class Finder {
  public:
-  /// `poses`: of the principal frames of all bodies, then of the world.
+  /// `poses`: poses of the principal frames of all bodies, then of the world.
   Finder(const sim::Tables& tables, const sim::View& view, std::vector<ShapePose> poses)
       : t_(tables), view_(view), poses_(std::move(poses)) {}
 

@@ -1,4 +1,5 @@
-/// DC motors: tables of a model, commands and readings of a batch. dc_motor.inl contains their law.
+/// DC motors: tables of a model, commands and readings of a batch. dc_motor.inl contains the law of
+/// the motors.
 
 #include <algorithm>
 

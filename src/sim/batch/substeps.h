@@ -8,8 +8,8 @@ namespace taut::sim {
 
 /// Maximum number of substeps of a step.
 inline constexpr int kMostSubsteps = 100;
-/// Largest h^2 K of a substep. With it, the energy of an explicit spring oscillates by up to a
-/// quarter of this value, relative to its mean (docs/theory/cables.md, eq. 11a).
+/// Largest h^2 K of a substep. At this value, the energy of an explicit spring oscillates by up to
+/// a quarter of this value, relative to its mean (docs/theory/cables.md, eq. 11a).
 inline constexpr double kSubstepSpring = 0.05;
 
 struct SubstepRule {
@@ -21,7 +21,7 @@ struct SubstepRule {
   bool IsEnough(double step_s) const noexcept;
 };
 
-/// Returns the substep rule of a model. It depends on masses, stiffnesses and dampings of the
+/// Returns the substep rule of a model. The rule depends on masses, stiffnesses and dampings of the
 /// model, not on parameters of a world.
 SubstepRule SubstepRuleOf(const Tables& tables);
 

@@ -6,8 +6,8 @@
 /// remainder is small for rods, because z is the axis of near symmetry (model.cpp). The first term
 /// rotates the body about L, the remainder about its y and z axes (docs/theory/integrator.md,
 /// I5-I6; after Dullweber, Leimkuhler, McLachlan, J. Chem. Phys. 107, 1997, eq. 2.4). L is
-/// conserved up to rounding. So is the energy of an axisymmetric body at any spin; for other
-/// bodies, the energy error stays bounded.
+/// conserved up to rounding. The energy of an axisymmetric body is conserved, too, at any spin; for
+/// other bodies, the energy error stays bounded.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -41,7 +41,7 @@ struct AxisTurn {
   }
 };
 
-/// Normalizes q and returns its squared length. If this is infinite (possible for finite
+/// Normalizes q and returns its squared length. If this length is infinite (possible for finite
 /// components), the result is not a rotation.
 template <class W>
 TAUT_INLINE W NormalizeQuat(Q4<W>& q) noexcept {
@@ -51,7 +51,7 @@ TAUT_INLINE W NormalizeQuat(Q4<W>& q) noexcept {
   return square;
 }
 
-/// q <- q (1, t e_axis), not normalized.
+/// Rotates about a body axis: q <- q (1, t e_axis), not normalized.
 template <class W>
 TAUT_INLINE void TurnY(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.y, q.x - t * q.z, q.y + t * q.w, q.z + t * q.x};
@@ -61,7 +61,7 @@ TAUT_INLINE void TurnZ(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.z, q.x + t * q.y, q.y - t * q.x, q.z + t * q.w};
 }
 
-/// q <- (1, u) q, not normalized: a rotation about u, a fixed direction in W.
+/// Rotates about u, a fixed direction in W: q <- (1, u) q, not normalized.
 template <class W>
 TAUT_INLINE void TurnAbout(Q4<W>& q, const V3<W>& u) noexcept {
   q = {q.w - (u.x * q.x + u.y * q.y + u.z * q.z), q.x + (u.x * q.w + u.y * q.z - u.z * q.y),
@@ -85,8 +85,8 @@ TAUT_INLINE void TurnAbout(Q4<W>& q, W c, const V3<W>& u) noexcept {
 }
 
 /// Angle per half step [rad] above which bodies on hinges use sine and cosine. Below it, they use
-/// the series of HalfAngle, with an error of at most 3e-5 of the angle. Hinges need this accuracy,
-/// because their turns are counted.
+/// the series of HalfAngle, with an error of at most 3e-5 of the angle. Hinges need sine and
+/// cosine, because their turns are counted.
 inline constexpr double kSeriesTurn = 0.25;
 
 /// Cosine and sine of theta / 2 in the lanes `fast`; 1 and HalfAngle in other lanes, to be
@@ -197,7 +197,7 @@ void StageDriftFirst(const View& m, const Rows<W>& s, W half_h) noexcept {
 /// Stage: second half of the drift, the mirror image of the first.
 template <class W>
 void StageDriftSecond(const View& m, const Rows<W>& s, const Scratch<W>& work, W half_h) noexcept {
-  // x + 0 turns -0 into 0, so that the sign of zero does not depend on other lanes
+  // Adding +0 turns -0 into +0, so that the sign of zero does not depend on other lanes.
   const W zero = W::Splat(0.0);
   for (int b = 0; b < m.body_count; ++b) {
     Q4<W> q = s.quat[b];

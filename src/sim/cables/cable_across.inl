@@ -97,14 +97,15 @@ inline Lean LeanOf(const Tangents<Vec3>& way, const Rises<double>& rise) noexcep
 
 /// Slides a bend of one lane if friction cannot hold it. Returns the displacement across the cable
 /// [m]. `moved`: circumferential displacement of the arc's middle on the wheel since the previous
-/// step [m]. During it, the bend moves in the mean direction of the cable, like a rope on a
-/// rotating drum (eq. 22a).
+/// step [m]. During this displacement, the bend moves in the mean direction of the cable, like a
+/// rope on a rotating drum (eq. 22a).
 template <class W>
 double SlideBend(const View& m, const Rows<W>& s, const TouchTable& touch, Scratch<W>& work,
                  const Vec3& p, const Vec3& q, int k, int lane, double moved) noexcept {
   /// Largest used fraction of the friction limit, so that some slip remains.
   constexpr double kSteepest = 0.995;
-  /// Largest axial motion in a step, relative to the shorter straight part; more sets a status bit.
+  /// Largest axial motion in a step, relative to the shorter straight part. A larger motion sets a
+  /// status bit.
   constexpr double kMostWalk = 0.1;
   const CableTable& cable = m.cables[touch.cable];
   W& along = s.slip_along[cable.first_slip + k];
@@ -172,7 +173,7 @@ void DriftAcross(const Rows<W>& s, const Scratch<W>& work, const CableTable& cab
   }
 }
 
-/// Slides all bends of a cable across it, and updates the path.
+/// Slides all bends of a cable across the cable, and updates the path.
 template <class W>
 [[gnu::noinline]] void SlideAcross(const View& m, const Rows<W>& s, Scratch<W>& work,
                                    const TouchTable& touch, int used,

@@ -141,7 +141,7 @@ int LinkSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Sc
   return count;
 }
 
-/// Removes wound length from the first span, and from the next spans if it is too short.
+/// Removes wound length from the first span, and from the next spans if the first one is too short.
 template <class S>
 TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
   using C = Constant<S>;
@@ -185,7 +185,7 @@ template <class W>
   MeasureSpans(m, s, cable, work, ends, length, ratio);
   for (int i = 0; i < cable.span_count; ++i) rests[i] = s.span_rest[cable.first_span + i];
   CarryOverAll(m, s, cable, work, ends, length, true, rests);
-  // Spans in series have together the stiffness of the cable.
+  // The spans, connected in series, have the stiffness of the cable.
   const W area = k * before;
   if (cable.touch >= 0) {
     WindGrips(m, s, cable, rest - before, rests);

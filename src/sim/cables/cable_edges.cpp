@@ -145,8 +145,8 @@ void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& sear
 void SearchSurface(const SurfaceTable& s, double first_key, Search& search) noexcept {
   const FreeSpan& span = search.span();
   const double radius = search.radius_m();
-  // Distance beyond which edges cannot be touched. For meshes, it includes the depth that a cable
-  // can reach within a step.
+  // Distance beyond which edges cannot be touched. For meshes, this distance includes the depth
+  // that a cable can reach within a step.
   double reach = 2.0 * radius;
   if (s.is_field) {
     const Vec3 low{Smaller(span.from.x, span.to.x), Smaller(span.from.y, span.to.y), 0.0};

@@ -1,5 +1,5 @@
-/// Terrain edges around which a cable wraps, for one world (docs/theory/cables.md, section 6). Part
-/// of a step, so without the standard library.
+/// Terrain edges around which a cable wraps, for one world (docs/theory/cables.md, section 6). A
+/// step includes this header, so it does not use the standard library.
 #pragma once
 
 #include "math/cable_wheel.h"
@@ -62,8 +62,8 @@ bool CanLieOn(const BendPlace& place, const FreeSpan& span, double side) noexcep
 bool FindEdge(const View& m, const FreeSpan& span, double radius_m, const double* taken,
               int taken_count, bool any, BendFound* found) noexcept;
 
-/// Returns a lower bound of the distance from the span to any edge [m], at most `enough_m`. If it
-/// is <= 0, the span may touch an edge.
+/// Returns a lower bound of the distance from the span to any edge [m], at most `enough_m`. If the
+/// bound is <= 0, the span may touch an edge.
 double FreeDistance(const View& m, const FreeSpan& span, double radius_m, double enough_m) noexcept;
 
 }  // namespace taut::sim

@@ -27,9 +27,9 @@ TAUT_INLINE void Crowd(Scratch<W>& work, const TouchTable& touch, int lane) noex
   work.crowded_cable[lane] = touch.cable;
 }
 
-/// Returns a bend of one lane to remove, or -1. It is a bend whose rod contains an end of the cable
-/// or the next path point. If two consecutive rods overlap, it is the bend with the smaller wrap
-/// angle.
+/// Returns a bend of one lane to remove, or -1. A bend is removed if its rod contains an end of the
+/// cable or the next path point. Of two consecutive bends on overlapping rods, the bend with the
+/// smaller wrap angle is removed.
 template <class W>
 int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                 int used, int count, int lane) noexcept {
@@ -142,8 +142,8 @@ void LayThen(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable
 }
 
 /// Maximum number of substeps for updates of bends. In each substep, bodies move by at most half a
-/// rod radius, except very fast ones. So the cable meets rods one after the other from outside, and
-/// each new bend gets its correct place in the path.
+/// rod radius, except very fast ones. Therefore the cable meets rods one after the other from
+/// outside, and each new bend gets its correct place in the path.
 inline constexpr int kMostParts = 32;
 template <class W>
 [[gnu::noinline]] W PartsOf(const View& m, const Scratch<W>& work, const TouchTable& touch,

@@ -79,7 +79,7 @@ template <class W>
     const auto has = HasSpan(m, s, cable, k + 1);
     const W middle = MiddleOf(wheel, MarkOfBend(m, work, bends[k]), ends);
     W place = Select(known < W::Splat(kNotHeld), known, middle), height = known_height;
-    // null for readings, because the values belong to another pose
+    // Null for readings, because the stored values of `lean` belong to another pose.
     const W* const lean = keep ? &work.across[slip].lean : nullptr;
     CarryOver(wheel, middle, k, ends, length, keep, lean, place, height, rest);
     if (keep) known = Select(has, place, known), known_height = Select(has, height, known_height);

@@ -109,7 +109,8 @@ TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W dl, W half_h)
   }
 }
 
-/// Applies the final tension of a soft cable to its bodies. `kAllSoft`: it is soft in all lanes.
+/// Applies the final tension of a soft cable to its bodies. `kAllSoft`: the cable is soft in all
+/// lanes.
 template <bool kTwo, bool kAllSoft, class W>
 TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
   const CableWork<W>& row = work.cables[c];

@@ -1,6 +1,6 @@
 /// Cable wrapping around terrain edges (cable_edges.h) and rods (cable_rods.inl;
 /// docs/theory/cables.md, section 6). A bend is a wheel that exists only while the cable touches
-/// it.
+/// the edge or rod.
 #pragma once
 
 #include "sim/bodies/stage_bodies.inl"

@@ -90,8 +90,8 @@ template <class W>
 }
 
 /// Resolves deep penetrations of bodies on implicit cables by slow velocities. A position
-/// correction would ignore that it stretches the cables. The speed is limited, so that no body
-/// jumps up by its penetration depth. `on`: affected lanes.
+/// correction would stretch the cables without any force against it. The speed is limited, so that
+/// no body jumps up by its penetration depth. `on`: affected lanes.
 inline constexpr double kLeavingShare = 0.025, kMostLeavingMPerS = 0.2;
 template <class Num, int kLinks, class M>
 TAUT_INLINE void LeaveSlowly(Contact<Num, kLinks>& c, M on, double step_s) noexcept {

@@ -22,8 +22,8 @@ struct CableForce {
   W tension, elastic;
 };
 
-/// Tension law of paper eq. (1): T = k (l - L) + b dl while l > L, never negative; otherwise 0. The
-/// clamped law limits the damper force to +- the spring force.
+/// Tension law (Mirletz et al. 2015, eq. 1): T = k (l - L) + b dl while l > L, never negative;
+/// otherwise 0. The clamped law limits the damper force to +- the spring force.
 template <class W>
 TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
   const W zero = W::Splat(0.0);
@@ -48,8 +48,8 @@ TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
   return here;
 }
 
-/// Returns length and rate of a cable, and sets `ends` to its path points. `kTwo`: it has two,
-/// which must stay in registers; therefore only inlined functions receive them.
+/// Returns length and rate of a cable, and sets `ends` to its path points. `kTwo`: the cable has
+/// two path points, which must stay in registers; therefore only inlined functions receive them.
 template <bool kTwo, class W>
 TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, const CableTable& cable,
                                            int attachment_count, Scratch<W>& work,
@@ -109,7 +109,7 @@ TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h,
 template <class W>
 struct CableStep {
   W h, inv_h;
-  MaskOf<W> goes_on;  ///< There was a previous step, with known tensions.
+  MaskOf<W> goes_on;  ///< Lanes with a previous step, whose tensions are known.
   W push;  ///< Half a step in lanes with dampers, where tensions are iterated; otherwise 0.
   W room;  ///< Negative if a cable may become slack or taut [m^2].
 };
@@ -166,7 +166,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     row.damped = MaskOf<W>::Splat(false);
     return;
   }
-  // In the first step, the spring force, so that bodies in equilibrium do not move.
+  // In the first step, the tension is the spring force, so that bodies in equilibrium do not move.
   row.tension = Select(step.goes_on, s.tension[c], row.spring);
   row.damping = b;
   // Undamped or slack cables have exactly the spring force. Stiff cables keep their tension.
@@ -181,7 +181,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
 /// Computes the final tension of soft cables that become slack or taut in this step: the mean
 /// spring force over the step, implicit in the final length (docs/theory/cables.md, eq. 11).
 /// Explicit steps conserve v^2 + w^2 x^2 / (1 - w^2 h^2 / 4) (eq. 11a), so the spring must store
-/// this energy. Otherwise each snatch would gain or lose some.
+/// this energy. Otherwise each snatch would gain or lose energy.
 template <bool kMotors, class W>
 [[gnu::noinline, gnu::cold]] void SettleKinks(const View& m, const Rows<W>& s, Scratch<W>& work,
                                               CableStep<W> step) noexcept {

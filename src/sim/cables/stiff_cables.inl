@@ -102,7 +102,7 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
   row.l[0] = Select(on, Min(h * s.tension[c], row.upper), zero);
 }
 
-/// Returns the tension of a stiff cable relative to the largest stable one (eq. 12). The limit
+/// Returns the tension of a stiff cable relative to the largest stable tension (eq. 12). The limit
 /// comes from the explicit transverse force; along the cable, any tension is stable.
 template <class W>
 W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {

@@ -44,11 +44,11 @@ TAUT_INLINE MaskOf<W> IsOnRod(const View& m, const WrapPointNumbers<W>& bend) no
   return !((bend.key == W::Splat(kNoKey)) | (bend.body == W::Splat(m.body_count)));
 }
 
-/// Returns the lanes in which bend `k` and the next one are on rods that overlap at the cable. Then
-/// no shortest path over both exists: path and energy jump, or the bends drift along the rods. A
-/// cable that passes between the rods needs free space. A cable over both fails only if the rods
-/// overlap, which is possible if they do not collide. Crossings near the end of a rod are joints
-/// and do not count. `anywhere`: not only at the cable.
+/// Returns the lanes in which bend `k` and the next one are on rods that overlap at the cable. In
+/// these lanes, no shortest path over both rods exists: path and energy jump, or the bends drift
+/// along the rods. A cable that passes between the rods needs free space. A cable over both fails
+/// only if the rods overlap, which is possible if they do not collide. Crossings near the end of a
+/// rod are joints and do not count. `anywhere`: overlaps away from the cable count, too.
 template <class W>
 TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                      const TouchTable& touch, int k, bool anywhere) noexcept {

@@ -1,5 +1,5 @@
-/// Coupling of cables through bodies: the Delassus operator of their tensions. It determines which
-/// cables are too stiff for explicit forces (docs/theory/cables.md, eq. 7).
+/// Coupling of cables through bodies: the Delassus operator of their tensions. The coupling
+/// determines which cables are too stiff for explicit forces (docs/theory/cables.md, eq. 7).
 
 #include <algorithm>
 #include <cmath>

@@ -253,9 +253,9 @@ class Compiler {
     t_.shape_refs.push_back(ref);
   }
 
-  /// Collects the points that can touch planes. Of points at the same place, the thickest is kept,
-  /// with spheres first. So ends of rods at the sphere of a node add no points, also not on other
-  /// ground.
+  /// Collects the points that can touch planes. Of several points at the same place, only the
+  /// thickest is kept; spheres come first. Therefore ends of rods at the sphere of a node add no
+  /// points, also not on other ground.
   void Points() {
     for (int body = 0; body < t_.body_count; ++body) {
       t_.first_point.push_back(static_cast<int>(t_.points.size()));

@@ -138,8 +138,8 @@ class CableCompiler {
     t_.max_wheels = std::max(t_.max_wheels, kMostBends);
   }
 
-  /// Allocates spans for a cable that may touch rods or terrain. Their number changes with its
-  /// contacts; at the start there is one.
+  /// Allocates spans for a cable that may touch rods or terrain. The number of spans changes with
+  /// the contacts of the cable; at the start, there is one span.
   void AddOwnSpans(const CableDef& cable, CableTable& table) {
     table.first_slip = static_cast<int>(t_.slips.size());
     table.first_span = t_.span_count;

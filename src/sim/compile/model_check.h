@@ -12,8 +12,8 @@ inline constexpr long kMaxShapePairs = 10'000'000;
 inline constexpr long kMaxMovingShapePairs = 200'000'000;
 inline constexpr long kMaxCouplings = 10'000'000;
 
-/// Adds a diagnostic without file position for every invalid number or index. Returns false if
-/// there is one.
+/// Adds a diagnostic without file position for every invalid number or index. Returns false if any
+/// is invalid.
 bool CheckModel(const ModelDef& def, Diagnostics& out);
 
 /// Adds an error if TAUT_SIMD does not name an instruction set.

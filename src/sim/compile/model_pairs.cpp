@@ -93,7 +93,8 @@ class PairCompiler {
     t_.slot_count = first;
   }
 
-  /// Lists the shapes of bodies that may touch each other, and the bodies kept apart from each.
+  /// Lists the shapes of bodies that may touch each other, and the bodies that cannot collide with
+  /// each of them.
   void Rows() {
     std::vector<int> led;  // kinematic bodies do not touch each other
     for (int body = 0; body < t_.body_count; ++body) {

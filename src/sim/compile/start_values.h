@@ -58,7 +58,7 @@ inline Vec3 AngularMomentum(const Tables& t, int i) noexcept {
 }
 
 /// Mass properties for another mass than in the definition; the inertia is scaled with the mass.
-/// All are zero for a fixed body.
+/// All values are zero for a fixed body.
 struct Masses {
   double mass = 0, inv_mass = 0;
   Vec3 inertia, inv_inertia;

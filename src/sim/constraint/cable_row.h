@@ -5,7 +5,7 @@
 /// end - u the value at its end. u is the rate at which the cable shortens after the step.
 ///
 ///   l = phi (spring (p + p0) + damper (z - z0 + winding)),   0 <= l <= upper
-///   p = max(z, 0),  p0 = max(z0, 0),  phi = (p - p0) / (z - z0): taut share of the way
+///   p = max(z, 0), p0 = max(z0, 0), phi = (p - p0) / (z - z0): taut fraction of the change
 ///
 /// If the cable is taut at both ends of the step, the law is a line: l = base - gain u. If it is
 /// slack at both ends, l = 0. Otherwise, the law is a curve that decreases with u. A row alone
@@ -29,7 +29,7 @@ struct CableRow {
   Num start, end;      ///< z0, and the u at which the stretch at the end of the step is 0 [m/s].
   Num spring, damper;  ///< gain = spring + damper [kg].
   Num winding;         ///< Twice the rate of the rest length [m/s].
-  Num inv_gain;        ///< [1/kg]
+  Num inv_gain;        ///< 1 / gain [1/kg].
   Num A;               ///< Inverse effective mass along the cable [1/kg].
   Num inverse;         ///< 1 / (1 + gain A).
   Num upper;           ///< Largest impulse [N s].
@@ -51,8 +51,8 @@ struct CableRow {
            !Any(Abs(a.slope - b.slope) > Num::Splat(kNearly) * (a.slope + b.slope));
   }
 
-  /// Sets the law. `from`: z0; `to`: z at the end of the step if the length does not change. All
-  /// rates are as in the file comment.
+  /// Sets the law. `from`: z0; `to`: z at the end of the step if the length does not change. The
+  /// file comment defines all rates.
   TAUT_INLINE void SetLaw(Num from, Num to, Num spring_kg, Num damper_kg, Num wound) noexcept {
     start = from, end = to;
     spring = spring_kg, damper = damper_kg;

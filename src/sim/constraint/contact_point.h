@@ -19,7 +19,7 @@ struct ContactPoint {
 
   Num live;             ///< 1 in lanes that have this contact, otherwise 0.
   Num wnn, wt;          ///< Inverse effective masses: normal; upper bound for the tangents [1/kg].
-  Num inv_wnn, inv_wt;  ///< [kg]
+  Num inv_wnn, inv_wt;  ///< Inverses of wnn and wt [kg].
   Num w1n, w2n, w11, w12, w22;  ///< Other elements of the inverse effective mass [1/kg].
   Num bias[3];                  ///< Targets: un >= -bias[0], ut = -bias[1..2] [m/s].
   Num mu, restitution;
@@ -213,8 +213,8 @@ struct ContactPoint {
         at_high = Excess(slip, high);
       }
       // Without a change of sign, the closing speed is below 1e-50 of the slip (positions that have
-      // converged to rounding). The impulses at `high` are the solution then, and CloseIn would
-      // divide 0 by 0.
+      // converged to rounding). In this case, the impulses at `high` are the solution, and CloseIn
+      // would divide 0 by 0.
       if (!Any(at_high > zero)) CloseIn(slip, low, at_low, high, at_high);
     }
     l_now[0] = Max(slip.ln, zero);
@@ -287,9 +287,9 @@ struct ContactPoint {
     return Select(b.closed, Min(ends, Select(b.slides, never, leaves)), never);
   }
   /// For inconsistent contacts (eq. 28a): computes the smallest change of u that satisfies the law
-  /// with the impulses l on branch `b`; impulses of open contacts are ignored. Its parts: the error
-  /// of un = -bias; the slip, if l is inside the cone; the part of the slip not opposite to
-  /// friction, if l is on the cone's boundary.
+  /// with the impulses l on branch `b`; impulses of open contacts are ignored. The change consists
+  /// of the error of un = -bias and of a part of the slip: the whole slip if l is inside the cone;
+  /// the part not opposite to friction if l is on the cone's boundary.
   void Disagreement(const Branch& b, const Num* u, const Num* l_now, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0);
     const Num l1 = l_now[1], l2 = one_direction ? zero : l_now[2];

@@ -3,7 +3,7 @@
 ///   u + give l  = target   where  lower < l < upper,
 ///               >= target  where  l = lower,   <= target  where  l = upper;
 ///
-///   u: relative velocity of the two bodies along it, after the step
+///   u: relative velocity of the two bodies in this direction, after the step
 ///
 /// Constrained direction: no limits; the compliance is a tiny fraction of the inverse effective
 /// mass, relative to the previous impulse (joints.md, eq. 3). Joint limit: only pushes. Dry
@@ -25,8 +25,8 @@ struct JointRow {
   static constexpr double kNoLimit = 1e300;
 
   Num live;          ///< 1 in lanes in which the row acts, otherwise 0.
-  Num target;        ///< [m/s]
-  Num give;          ///< [1/kg], >= 0.
+  Num target;        ///< Target velocity [m/s].
+  Num give;          ///< Velocity per impulse [1/kg], >= 0.
   Num lower, upper;  ///< Limits of the impulse [N s], lower <= 0 <= upper.
   Num A;             ///< Inverse effective mass of the row [1/kg].
   Num l[1];          ///< Impulse [N s].
@@ -38,7 +38,7 @@ struct JointRow {
   struct Branch {
     Mask inside;  ///< The impulse is between its limits.
     Num beyond;   ///< -1: below the limits; 1: above; 0: between.
-    Num impulse;  ///< The limit that applies outside.
+    Num impulse;  ///< Limit that applies outside of the range.
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     return !Any(Abs(a.beyond - b.beyond) > Num::Splat(0.5));

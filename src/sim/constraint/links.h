@@ -21,7 +21,7 @@ using MaskOf = decltype(Num() < Num());
 template <class Num, int R>
 struct Link {
   int body;
-  Num inv_mass;    ///< [1/kg]
+  Num inv_mass;    ///< Inverse mass of the body [1/kg].
   V3<Num> lin[R];  ///< Per row: direction.
   V3<Num> ang[R];  ///< Per row: lever arm about the center of mass [m].
   /// Per row: inverse inertia * lever arm, the angular velocity per impulse [rad/s per N s].
@@ -34,14 +34,14 @@ struct Twist {
   V3<Num> v, w;
 };
 
-/// u += J (v, w).
+/// Adds the velocities of a link: u += J (v, w).
 template <class Num, int R>
 TAUT_INLINE void AddVelocity(const Link<Num, R>& link, const V3<Num>& v, const V3<Num>& w,
                              Num* u) noexcept {
   for (int r = 0; r < R; ++r) u[r] += Dot(link.lin[r], v) + Dot(link.ang[r], w);
 }
 
-/// (v, w) += M^-1 J^T l.
+/// Applies the impulses of a link: (v, w) += M^-1 J^T l.
 template <class Num, int R>
 TAUT_INLINE void Push(const Link<Num, R>& link, const Num* l, V3<Num>& v, V3<Num>& w) noexcept {
   for (int r = 0; r < R; ++r) {
@@ -50,7 +50,7 @@ TAUT_INLINE void Push(const Link<Num, R>& link, const Num* l, V3<Num>& v, V3<Num
   }
 }
 
-/// c += J_a M^-1 J_b^T for two links to one body: a block of the Delassus operator.
+/// Adds a block of the Delassus operator for two links to one body: c += J_a M^-1 J_b^T.
 template <class Num, int A, int B>
 TAUT_INLINE void AddCoupling(const Link<Num, A>& a, const Link<Num, B>& b, Num* c) noexcept {
   for (int i = 0; i < A; ++i) {

@@ -64,7 +64,8 @@ struct TurnFriction {
     }
     return worst;
   }
-  /// Sliding: along s it is at the limit; across, (1 - (1 - e) shrink) dl + shrink / w du = -l.
+  /// While sliding, the impulse along s is at the limit; across s, (1 - (1 - e) shrink) dl + shrink
+  /// / w du = -l.
   void Linearize(const Branch& b, const Num* u, const Num* l_now, Num e,
                  LinearLaw<Num, 3>& out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -125,7 +126,7 @@ struct TurnFriction {
     }
     return b;
   }
-  /// out <- scale (1 - s s^T), 3x3.
+  /// Computes the 3x3 matrix out <- scale (1 - s s^T).
   static void Across(const Branch& b, Num scale, Num* out) noexcept {
     const Num zero = Num::Splat(0.0);
     for (int i = 0; i < 3; ++i) {
@@ -133,7 +134,7 @@ struct TurnFriction {
       out[4 * i] += scale;
     }
   }
-  /// x <- (A + k)^-1 b, by Cholesky factorization. For a thin rod, inverse masses about its axis
+  /// Solves (A + k) x = b by Cholesky factorization. For a thin rod, inverse masses about its axis
   /// and normal to it differ by a factor of a million.
   void Solve(Num k, const Num* b, Num* x) const noexcept {
     const Num d0 = A[0][0] + k, l1 = A[1][0] / d0, l2 = A[2][0] / d0;

@@ -30,7 +30,7 @@ struct SlidingContact {
   // Outputs, in the direction of largest friction:
   double static_friction, kinetic_friction;
   bool lost;      ///< The custom law returned a number that is not finite; the world must halt.
-  bool directed;  ///< Whether the next two are valid.
+  bool directed;  ///< Whether `along` and `across` are valid.
   double along[3], across[3];  ///< Directions; their lengths are fractions of the friction.
 };
 

@@ -1,6 +1,6 @@
 /// Evaluation of friction laws with more than two coefficients per pair (friction.h), before the
-/// contact equations are set up. Converts between SIMD numbers and scalar code. Not inlined, so
-/// that models without such laws keep their registers.
+/// contact equations are set up. Converts between SIMD numbers and scalar code. The functions are
+/// not inlined, so that they cost no registers in models without such laws.
 #pragma once
 
 #include "sim/contacts/contact_friction.h"

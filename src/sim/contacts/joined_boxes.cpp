@@ -34,8 +34,8 @@ Vec3 PlaceOf(const TouchPoint& t) noexcept {
   return Load(t.point) - (0.5 * t.gap_m) * Load(t.normal);
 }
 
-/// Sine by which a normal at other terrain may point into a box. It is not 0, because crossing
-/// edges have no exact normal.
+/// Sine by which a normal at other terrain may point into a box. The value is not 0, because
+/// crossing edges have no exact normal.
 constexpr double kIntoGround = 1e-2, kIntoGroundOfRod = 1e-7;
 
 /// Returns whether other terrain covers a point of a box and its neighborhood.
@@ -131,7 +131,7 @@ void MarkRound(const RoundShape& round, const ShapeTable* shapes, JoinedPoint* p
   const Vec3 along = Load(round.to) - Load(round.from);
   for (int i = 0; i < count; ++i) {
     JoinedPoint& p = points[i];
-    // Deep inside a box, its own exit direction applies.
+    // Deep inside a box, the exit direction of this box applies.
     if (p.touch.gap_m <= -r) continue;
     const Station station = StationOf(round, p.touch);
     const Vec3 place = PlaceOf(p.touch), normal = Load(p.touch.normal);

@@ -16,7 +16,8 @@ std::uint32_t FirstKeyOf(const View& m, MovingPair bodies) noexcept;
 /// Returns one past the largest key of a contact.
 std::uint32_t KeyEnd(const View& m) noexcept;
 
-/// Returns a pair of two shapes with its combined coefficients. `key`: of its first contact.
+/// Returns a pair of two shapes with its combined coefficients. `key`: key of the first contact of
+/// the pair.
 ShapePairTable PairOf(const View& m, int shape_a, int shape_b, std::uint32_t key) noexcept;
 
 /// Returns the pair to which a contact key belongs. The key must be at least

@@ -5,7 +5,8 @@
 /// other. Pairs that it does not find cannot touch until two bodies together have moved by that
 /// distance. Only the pairs in the list are tested. A test of all pairs has bit-identical results:
 /// the list never lacks a pair that may touch, and it ascends like all pairs. A group of worlds has
-/// one list with the pairs of all lanes. Therefore other lanes only add pairs that do not touch.
+/// one list with the pairs of all lanes. For one lane, the other lanes therefore only add pairs
+/// that do not touch.
 #pragma once
 
 #include "sim/contacts/body_distance.inl"
@@ -26,7 +27,7 @@ TAUT_INLINE W MotionSinceSearch(const View& m, const Rows<W>& s, const Scratch<W
                                 W h) noexcept {
   const V3<W> d = s.pos[body] - s.near_pos[body];
   const Q4<W>&q = s.quat[body], &p = s.near_quat[body];
-  // Of a rotation by the angle x, the cosine of x / 2; a point at distance r moves 2 r sin(x / 2).
+  // Cosine of half the rotation angle x. A point at distance r moves by 2 r sin(x / 2).
   const W cosine = q.w * p.w + q.x * p.x + q.y * p.y + q.z * p.z;
   const W sine2 =
       Max(W::Splat(1.0 + kNearRounding * kNearRounding) - cosine * cosine, W::Splat(0.0));
@@ -125,7 +126,7 @@ void FindNear(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, W h) 
   }
   BuildNearTrees(m, s, work);
   for (int i = 0; i < m.near_capacity; ++i) s.clearance[m.world_pair_count + i] = W::Splat(0.0);
-  // Fast bodies need room for some steps.
+  // For fast bodies, the list must last for several steps.
   constexpr double kSteps = 4.0;
   s.near_m[0] = two * Max(W::Splat(kSteps) * reach, reach + W::Splat(m.near_m)) + least;
   if (ListNear(m, s, g, work, s.near_m[0])) return;

@@ -1,5 +1,6 @@
-/// Lower bound of the distance between spheres and capsules, in all lanes at once. It only
-/// determines whether contacts are computed, so its bits may differ from shape_contacts.cpp.
+/// Lower bound of the distance between spheres and capsules, in all lanes at once. This bound only
+/// determines whether contacts are computed, so it may differ in rounding from the distance in
+/// shape_contacts.cpp.
 #pragma once
 
 #include "sim/data/rows.h"

@@ -43,7 +43,8 @@ double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work, int
                           LanePose(m, s, work, b.body, lane), enough_m);
 }
 
-/// The same two functions for a shape and a surface. `kept`: cache of near parts, or null.
+/// TouchGroundLane, DistanceGroundLane: like TouchLane and DistanceLane, for a shape and a surface.
+/// `kept`: cache of near parts, or null.
 template <class W>
 int TouchGroundLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, int lane, double margin, NearParts* kept,

@@ -95,7 +95,7 @@ void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
 }
 
 /// Returns whether two bodies may touch in some lane. `near`: lanes in which their clearance is
-/// used up; `margin`: how far they may approach.
+/// used up; `margin`: bound of their approach [m].
 template <class W, class M, class Pair>
 bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, const Pair& bodies,
               W& clearance, M near, W margin) noexcept {
@@ -106,7 +106,7 @@ bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, const Pai
     near = clearance < margin;
     if (!Any(near)) return false;
   }
-  // A distance that holds in all lanes delays the next query of all of them.
+  // A distance that holds in all lanes delays the next query in all lanes.
   const BodyDistance<W> exact = DistanceOfBodies(m, s, work, bodies, near);
   clearance = exact.everywhere ? exact.least : Select(near, exact.least, clearance);
   return Any(clearance < margin);

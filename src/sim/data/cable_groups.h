@@ -18,10 +18,10 @@ inline constexpr double kUnresolvedSpring = 4.0;
 inline constexpr int kMostInGroup = 128;
 
 enum GroupKind : uint8_t {
-  kGroupStiff = 1,   ///< One of its cables is stiff.
-  kGroupOther = 2,   ///< It has cables or bodies that the scheme does not support.
-  kGroupDamped = 4,  ///< It has a damped stiff cable with vibrations too fast for the step.
-  kGroupJoints = 8,  ///< It has joints.
+  kGroupStiff = 1,   ///< At least one cable of the group is stiff.
+  kGroupOther = 2,   ///< The group has cables or bodies that the scheme does not support.
+  kGroupDamped = 4,  ///< The group has a damped stiff cable with vibrations too fast for the step.
+  kGroupJoints = 8,  ///< The group has joints.
 };
 
 /// Returns whether the scheme supports a cable: straight between body points, without a DC motor.
@@ -46,7 +46,7 @@ TAUT_INLINE bool OnlyHolds(const View& m, const JointTable& j) noexcept {
 
 /// Groups of a world. Each array has one element per body.
 struct CableGroups {
-  int *group, *size;  ///< Lowest body of the group; number of its bodies, stored at this body.
+  int *group, *size;  ///< Lowest body of the group; size: at the lowest body.
   uint8_t* kind;      ///< Bits of GroupKind, stored at the lowest body.
 
   /// Returns whether the cables of a body are implicit in tension and direction.
@@ -123,7 +123,7 @@ TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
     if (K > kSoftSpring / (step_s * step_s)) kind |= kGroupStiff;
     if (K > kUnresolvedSpring / (step_s * step_s) && damps(c)) kind |= kGroupDamped;
     if (m.cables[c].touch >= 0) {
-      // The cable may touch any of its rods later.
+      // The cable may touch any rod of its list in a later step.
       const TouchTable& touch = m.touches[m.cables[c].touch];
       for (int i = 0; i < touch.rod_count; ++i) {
         mark(m.touch_rods[touch.first_rod + i].body, kGroupOther);

@@ -21,7 +21,7 @@ struct CableTable {
   int first_slip = 0;                  ///< First slip point, between the spans.
   int first_link = 0, link_room = 0;   ///< Links of the spans to bodies.
   bool clamped_damping = false;
-  /// It has two attachments, on two different bodies, neither of them the world.
+  /// Whether the cable has two attachments, on two different bodies other than the world.
   bool joins_two = false;
   int motor = -1;  ///< Index of the DC motor; -1: none.
   int touch = -1;  ///< Index in View::touches; -1: no wrapping around rods or terrain.
@@ -41,28 +41,29 @@ struct WheelTable {
 
 /// Point at which a cable with capstan friction may slip: an eyelet, a wheel or a bend.
 struct SlipTable {
-  int at = 0;      ///< Path point; for wheels, where the cable reaches it; unused for bends.
+  int at = 0;      ///< Path point; for wheels, where the cable reaches the wheel; unused for bends.
   int wheel = -1;  ///< Index among all wheels; -1: an eyelet or a bend.
   double friction = 0;
   double start_place = kNotHeld;  ///< Middle of the arc in the described pose
                                   ///< (`MiddleOf`) [rad]; kNotHeld: no wheel.
 };
 
-/// Cable with wrapping around terrain edges or rods (cable_wrapping.inl). It has two attachments.
+/// Cable with wrapping around terrain edges or rods (cable_wrapping.inl). Such a cable has two
+/// attachments.
 struct TouchTable {
   int cable = 0;
   int first_bend = 0;  ///< Index of the first of its kMostBends bends.
   double radius_m = 0;
-  bool terrain = false;              ///< Whether it wraps around terrain edges.
+  bool terrain = false;              ///< Whether the cable wraps around terrain edges.
   double friction = 0;               ///< If positive, the cable has up to kMostBends + 1 spans.
-  int first_rod = 0, rod_count = 0;  ///< Rods around which it may wrap.
+  int first_rod = 0, rod_count = 0;  ///< Rods around which the cable may wrap.
 };
 
 /// Rod around which such a cable may wrap.
 struct TouchRodTable {
   int shape = 0, body = 0;  ///< Impulses move the body.
   double center_P[3] = {}, axis_P[3] = {};
-  /// Half length; distance from the axis to the center line of a cable on it.
+  /// Half the length of the rod; distance from its axis to the center line of a cable on the rod.
   double half_m = 0, radius_m = 0;
 };
 

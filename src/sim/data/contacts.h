@@ -16,16 +16,16 @@ template <class Num, int kLinks>
 struct Contact : ContactPoint<Num, kLinks> {
   Num key;    ///< Key of the contact (pair and feature); identifies its memory in the next step.
   Num frame;  ///< Contacts with equal numbers have equal directions.
-  Num gap;    ///< At the middle of the step [m].
+  Num gap;    ///< Gap at the middle of the step [m].
   Num deep;  ///< Penetration depth left for position projection (contact.md, eq. 7), < 0 [m]; or 0.
   Num lands;            ///< 1 if the contact closes faster than the forces of this step explain.
   Num radius;           ///< Distance from the skeleton of the shape to its surface [m].
   bool directed;        ///< In some lane, tangents have other lengths than 1 (friction.inl).
   bool upright;         ///< The directions are z, x and y in all lanes.
-  V3<Num> arm[kLinks];  ///< From the center of mass [m].
+  V3<Num> arm[kLinks];  ///< Lever arm from the center of mass [m].
   Num static_friction, kinetic_friction;
   Num patch;  ///< Patch (contact manifold) during the fit of biases.
-  Num slip;   ///< 1 if it slides, 0 if it sticks.
+  Num slip;   ///< 1 if the contact slides, 0 if it sticks.
 };
 
 /// Data of a contact for the next step: force for the warm start, and whether it slid.
@@ -43,7 +43,7 @@ struct ContactMemory {
 /// Contact of two moving shapes in one lane.
 struct TouchingPair {
   int a, b;           ///< Shapes.
-  std::uint32_t key;  ///< Of the first possible contact of the two.
+  std::uint32_t key;  ///< Key of the first possible contact of the two shapes.
   TouchPoint point;
 };
 

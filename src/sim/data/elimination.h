@@ -9,14 +9,14 @@ namespace taut::sim {
 /// Pattern of the nonzero 6x6 blocks of a matrix over bodies, including fill-in. Bodies are
 /// numbered in elimination order.
 struct BlockPattern {
-  /// Largest number of bodies with a table of all blocks. In larger patterns, numbers are searched
-  /// for, so that the memory is proportional to the number of blocks.
+  /// Largest number of bodies with a table of all blocks. In larger patterns, `Find` searches for
+  /// block numbers, so that the memory is proportional to the number of blocks.
   static constexpr int kMostInTable = 128;
 
   int* slot;         ///< [i * count + j]: number of block (i, j), or -1; unused in large patterns.
   int* below;        ///< [first_below[k] ...]: rows below the diagonal in column k, ascending.
   int* first_below;  ///< count + 1 elements.
-  /// Bodies; blocks of the lower triangle, which are first; all blocks.
+  /// Numbers of bodies, of blocks in the lower triangle (stored first), and of all blocks.
   int count, lower_count, block_count;
 
   /// Returns the number of a block of the pattern, without the table.

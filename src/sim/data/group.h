@@ -36,7 +36,7 @@ struct Group {
       /// Cache of near parts for pair `WorldPairTable::kept` in lane j: [kept * lanes + j].
       nullptr;
   MovingPair* near = nullptr;    ///< Bodies near each other in some lane, ascending.
-  int near_count = 0;            ///< Their number; -1: more than View::near_capacity.
+  int near_count = 0;            ///< Number of pairs in `near`; -1: more than View::near_capacity.
   bool sensed = false;           ///< The kSensed rows are up to date. Shared by const readers.
   LaneStatus* status = nullptr;  ///< Per lane.
 };

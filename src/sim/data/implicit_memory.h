@@ -12,7 +12,7 @@ namespace taut::sim {
 template <class Num>
 struct ImplicitBody {
   bool turns;           ///< Implicit cables act on the body; otherwise it keeps the explicit step.
-  Num mass;             ///< [kg]
+  Num mass;             ///< Mass [kg].
   V3<Num> moments;      ///< Principal moments [kg m^2].
   V3<Num> inv_moments;  ///< Inverse principal moments.
   V3<Num> force, torque;  ///< All other impulses of the whole step [N s], [N m s].
@@ -43,12 +43,12 @@ struct ImplicitPoint {
 template <class Num>
 struct ImplicitCable {
   int source;           ///< Index in Scratch::stiff.
-  int first, count;     ///< Range of its points.
-  Num k, b, most;       ///< [N/m], [N s/m]; largest tension [N].
-  Num stretch;          ///< At the start of the step [m].
-  Num rest, rate;       ///< Rest length at the start of the stage [m]; its change [m/s].
+  int first, count;     ///< Range of the cable's points.
+  Num k, b, most;       ///< Stiffness [N/m], damping coefficient [N s/m], largest tension [N].
+  Num stretch;          ///< Stretch at the start of the step [m].
+  Num rest, rate;       ///< Rest length at the start of the stage [m]; its rate [m/s].
   Num l0;               ///< Length at the start of the stage [m].
-  Num tension, slope;   ///< [N]; derivative with respect to the length at the end [N/m].
+  Num tension, slope;   ///< Tension [N]; its derivative by the final length [N/m].
   Num elastic;          ///< Spring part of the tension [N].
   Num impulse;          ///< Sum over the stages so far [N s].
   Num elastic_impulse;  ///< Spring part of `impulse` [N s].
@@ -58,8 +58,8 @@ struct ImplicitCable {
 template <class Num>
 struct ImplicitJoint {
   ImplicitPoint<Num> a, b;  ///< Joint points; d0, u, n, l0, l1 of `a` are from a to b.
-  int first, count;         ///< Range of its rows.
-  bool is_distance;         ///< Its only row constrains a distance.
+  int first, count;         ///< Range of the joint's rows.
+  bool is_distance;         ///< The only row of the joint constrains a distance.
   V3<Num> push;             ///< Impulse on the point of b [N s].
 };
 

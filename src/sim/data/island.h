@@ -24,7 +24,7 @@ inline constexpr double kDisagreementMPerS = 1e-6;
 inline constexpr int kDofs = 6;
 
 /// Convergence targets [m/s]. A solve must reach `tolerance`. While each step at least halves the
-/// residual, it continues to `goal`, because remaining errors accumulate over steps.
+/// residual, the solve continues to `goal`, because remaining errors accumulate over steps.
 struct Target {
   static constexpr double kGoal = 0.01, kPays = 0.5;
   double tolerance;
@@ -49,7 +49,8 @@ inline bool Stays(double now, double before, double bound) noexcept {
 ///        3: a point mass: v, mass; no inertia
 /// 1: a rotor: v.x is its angular velocity, mass its moment of inertia, lin.x of a link its lever
 /// arm
-/// Links to a prescribed unknown have zero inverse mass and `turn`, because no impulse moves it.
+/// Links to a prescribed unknown have zero inverse mass and `turn`, because impulses do not move
+/// this unknown.
 template <class Num>
 struct Unknown {
   int body;          ///< Index in the world.
@@ -137,9 +138,9 @@ struct Island {
   P pools;
   IslandMemory<Num> m;
   int rows;
-  bool has_matrix;  ///< There is memory for the linear systems.
+  bool has_matrix;  ///< Whether there is memory for the linear systems.
 
-  /// v <- v_free + M^-1 J^T l
+  /// Computes velocities: v <- v_free + M^-1 J^T l.
   void VelocitiesOf(const Num* l, Num* v) const noexcept {
     for (int b = 0; b < body_count; ++b) Store(bodies[b].free, v + 6 * b);
     pools.ForEach([&](auto& law, auto&, int row, int) {
@@ -151,7 +152,7 @@ struct Island {
       }
     });
   }
-  /// u <- J v
+  /// Computes constraint velocities: u <- J v.
   void Measure(const Num* v, Num* u) const noexcept {
     for (int i = 0; i < rows; ++i) u[i] = Num::Splat(0.0);
     pools.ForEach([&](auto& law, auto&, int row, int) {
@@ -161,7 +162,7 @@ struct Island {
       }
     });
   }
-  /// f += J^T l, except for prescribed unknowns.
+  /// Adds the impulses of a law: f += J^T l, except for prescribed unknowns.
   template <class Law>
   TAUT_INLINE void AddForce(const Law& law, const Num* l, Num* f) const noexcept {
     for (int i = 0; i < law.link_count; ++i) {
@@ -212,7 +213,7 @@ struct Island {
   TAUT_INLINE static void Store(const Twist<Num>& t, Num* x) noexcept {
     x[0] = t.v.x, x[1] = t.v.y, x[2] = t.v.z, x[3] = t.w.x, x[4] = t.w.y, x[5] = t.w.z;
   }
-  /// M x
+  /// Multiplies by the mass matrix: out <- M x.
   TAUT_INLINE static void TimesMass(const Unknown<Num>& body, const Num* x, Num* out) noexcept {
     const V3<Num> w = body.inertia * V3<Num>{x[3], x[4], x[5]};
     out[0] = body.mass * x[0], out[1] = body.mass * x[1], out[2] = body.mass * x[2];

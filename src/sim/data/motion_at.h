@@ -53,7 +53,7 @@ struct Motion {
   Q4<W> quat;
 };
 
-/// Evaluates eq. 2 and 3.
+/// Computes the motion at time `t` (docs/theory/motion.md, eq. 2 and 3).
 template <class W>
 Motion<W> MotionAt(const View& m, const MotionTable& table, W t) noexcept {
   Motion<W> at;

@@ -44,7 +44,7 @@ struct Rows {
   }
 };
 
-/// Data of a body during a step. The world has one, too: identity, zero.
+/// Data of a body during a step. The world has such data, too: identity and zeros.
 template <class W>
 struct BodyWork {
   M3<W> R;              ///< Rotation R_WP from frame P to W at the middle of the step.
@@ -95,7 +95,7 @@ struct CableWork {
   int link_count;
   W A;  ///< Inverse effective mass along the cable [1/kg].
   MaskOf<W> damped;
-  W damping;  ///< [N s/m]
+  W damping;  ///< Damping coefficient [N s/m].
   W share;    ///< Fraction of the error by which the tension is corrected (integrator.md, eq. I8).
   W upper;    ///< Upper limit of the tension [N].
   W tension;  ///< Latest tension [N].
@@ -132,7 +132,7 @@ struct MotionWork {
 template <class W>
 struct MotorWork {
   W direction;       ///< 1: winds in; -1: unwinds; 0: friction holds the rotor.
-  W mean, slows;     ///< [rad/s], [rad/(s N)]
+  W mean, slows;     ///< Units: [rad/s], [rad/(s N)].
   W end, end_slows;  ///< The speed at the end of the step is `end` - `end_slows` T.
   W share;  ///< Factor on stiffness and damping of the cable within this step (motor.md, eq. M.9).
   W duty, duty_falls;  ///< The duty is `duty` - `duty_falls` * mean speed. [1], [s/rad]
@@ -171,15 +171,15 @@ struct Scratch {
   StiffCable<W>* stiff;
   Row<Link<W, 1>> links;    ///< Links of all cables.
   ChainSpan<W>* spans;      ///< Spans of all cables with friction.
-  AcrossWork<W>* across;    ///< Data of all their slip points.
+  AcrossWork<W>* across;    ///< Data of all slip points of cables.
   RowLink<W>* chain_links;  ///< Links of spans; those of a cable start at its first_link.
-  int* chain_link_count;    ///< Number of these links per cable.
+  int* chain_link_count;    ///< Number of links of spans per cable.
   HeldRow<W>* joints;       ///< Rows of all joints.
   JointMemory<W> joint_memory;
   MotionWork<W>* motions;
   MotorWork<W>* motors;
   W* supplies;                        ///< Loaded voltage per supply [V].
-  uint64_t* near;                     ///< One bit per static shape, if they are in a BVH.
+  uint64_t* near;                     ///< One bit per static shape, if the shapes are in a BVH.
   TreeNode *near_leaves, *near_tree;  ///< BVH of the bodies in each lane (near_bodies.inl).
   uint64_t* near_marks;               ///< One bit per body.
   uint32_t* touched;  ///< Per point: bit mask of lanes where its shape is near a surface.
@@ -188,7 +188,7 @@ struct Scratch {
   DualMemory<W> dual;
   PrimalMemory<W> primal;
   ImplicitMemory<W> implicit;
-  const MovingPair* moving_pairs = nullptr;  ///< Pairs with a clearance, in its order.
+  const MovingPair* moving_pairs = nullptr;  ///< Pairs in the order of their clearances.
   int moving_count = 0;
   int stiff_count = 0, link_count = 0;
   bool start_known = false;
@@ -243,7 +243,7 @@ struct Scratch {
     implicit.Take(m, room_);
   }
 
-  /// Returns false if the list of the lane is full.
+  /// Adds a contact to the list of a lane. Returns false if the list is full.
   bool AddTouch(const View& m, int lane_number, const ShapePairTable& pair,
                 const TouchPoint& point) noexcept {
     int& count = touch_count[lane_number];

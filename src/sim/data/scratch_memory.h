@@ -17,9 +17,9 @@ template <class Num>
 using StepPools =
     Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>, TurnFriction<Num>, CableChain<Num>>;
 
-/// Numbers of a pattern that is used again if the next island has the same graph.
+/// Sizes of a pattern that the next island uses again if it has the same graph.
 struct KeptPattern {
-  int count;  ///< Bodies; 0: none is kept.
+  int count;  ///< Number of bodies; 0: no pattern is kept.
   int lower_count, block_count;
 };
 
@@ -30,12 +30,12 @@ struct LaneMemory {
   static constexpr int64_t kFullBodies = 128;
 
   Row<Contact<Num, 2>> pairs;  ///< Prepared contacts from the list of touches of the lane.
-  /// Per body: its island, and its number in it; bodies of an island.
+  /// Per body: its island, and its number in this island; bodies of an island.
   Row<int> root, local, bodies;
   Row<int> order, place;  ///< Elimination order and its inverse.
   Row<int> source;        ///< Per constraint of an island: its index in the lane.
   BodyGraph graph;
-  Row<uint64_t> kept_bits;  ///< Graph of the last island, whose order and pattern are still there.
+  Row<uint64_t> kept_bits;  ///< Graph of the last island, whose order and pattern are stored.
   Row<KeptPattern> kept;
   int block_capacity;
   Island<Num, StepPools<Num>> island;
@@ -125,8 +125,8 @@ struct JointMemory {
 template <class W>
 struct DualMemory {
   static constexpr int kMaxRows = 96, kMaxRowsPerBody = 12;
-  /// Packed contacts for height fields and meshes. There, rods have room for many contacts, but
-  /// only few are active.
+  /// Packed contacts for height fields and meshes. On these surfaces, rods have room for many
+  /// contacts, but only few are active.
   using Packed = ContactPoint<W, W::kLanes>;
 
   /// Row of J that acts on a body.
@@ -143,7 +143,7 @@ struct DualMemory {
   Row<W> d, now;            ///< Changes and impulses of the contacts only.
   Row<W> diagonal, active;  ///< A and S of the linearized cable laws.
   ImpactRows<W> impacts;
-  Row<Twist<W>> v;        ///< Per body.
+  Row<Twist<W>> v;        ///< Velocities per body.
   Row<Column> columns;    ///< Sorted by body.
   Row<int> first_column;  ///< Index of the first column of each body.
 

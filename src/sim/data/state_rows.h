@@ -1,6 +1,7 @@
 /// State rows of a group of worlds: the list of all data of a group, for serialization and hashes.
 /// It determines the memory layout, the access in a step, start values, contents of snapshots, and
-/// the treatment of halted worlds. Part of a step, so without the standard library (kernel.inl).
+/// the treatment of halted worlds. A step includes this header, so it does not use the standard
+/// library (kernel.inl).
 #pragma once
 
 namespace taut::sim {
@@ -57,7 +58,7 @@ struct MotorNumbers {
 /// Commands to a motor.
 template <class Num>
 struct MotorOrders {
-  Num duty;     ///< [1]
+  Num duty;     ///< Commanded duty [1].
   Num by_duty;  ///< 1: use the commanded duty; 0: follow the target of the cable.
   Num on;       ///< 0: the driver is off.
 };

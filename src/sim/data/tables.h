@@ -56,7 +56,7 @@ class Tables final : public Model {
   std::vector<ShapePairTable> shape_pairs;
   std::vector<WorldPairTable> world_pairs;               ///< Sorted by `a`.
   std::vector<int> colliders, first_shape, body_shapes;  ///< See View.
-  std::vector<std::uint32_t> shape_pairs_before;         ///< Likewise.
+  std::vector<std::uint32_t> shape_pairs_before;         ///< See View.
   std::vector<ApartTable> apart;
   std::vector<int> first_apart;
   std::vector<MovingPair> moving_pairs;
@@ -72,7 +72,7 @@ class Tables final : public Model {
   bool along_slip = false;
   std::vector<FrictionSide> friction_sides;  ///< For all shapes, then for all planes.
   std::vector<int> shape_of_point;
-  /// Some surface has friction with more than two constant coefficients.
+  /// Whether some surface has friction with more than two constant coefficients.
   bool friction_by_slip = false;
   double floor_m = 0;             ///< See View.
   std::vector<TreeNode> tree;     ///< BVH of the static shapes, if there are more than kFewShapes.
@@ -83,7 +83,7 @@ class Tables final : public Model {
   std::vector<JointTable> joints;
   std::vector<JointRowTable> joint_rows;
   int turn_friction_count = 0;  ///< Ball joints with friction.
-  bool joint_loops = false;     ///< Joints form a kinematic loop, so some rows may be redundant.
+  bool joint_loops = false;  ///< Whether joints form a kinematic loop: some rows may be redundant.
   /// Bodies moved by joints in elimination order, then kinematic bodies.
   std::vector<int> joint_bodies;
   std::vector<int> joint_number;  ///< Per body: index in `joint_bodies`, or -1.
@@ -135,7 +135,7 @@ void LayOutFriction(Tables& tables);
 /// Fills in motors and supplies, and the motor of each cable.
 void LayOutMotors(Tables& tables);
 
-/// Fills in all tables of cables. `frames`: of all bodies and of the world.
+/// Fills in all tables of cables. `frames`: principal frames of all bodies, and W.
 void LayOutCables(Tables& tables, const std::vector<Frame>& frames);
 
 /// Fills in touch_rods. Call it after the shapes are compiled.
@@ -144,7 +144,7 @@ void LayOutTouchRods(Tables& tables);
 /// Reserves links of cables with friction. Call it after LayOutTouchRods.
 void LayOutChainLinks(Tables& tables);
 
-/// Fills in all tables of joints. `frames`: of all bodies and of the world.
+/// Fills in all tables of joints. `frames`: principal frames of all bodies, and W.
 void LayOutJoints(Tables& tables, const std::vector<Frame>& frames);
 
 /// Fills in all tables of motions. Call it before shapes and joints are compiled.

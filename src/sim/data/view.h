@@ -29,16 +29,16 @@ struct MotorTable {
   double constant = 0;     ///< Torque per current, and back EMF per speed [V s/rad].
   double winding_ohm = 0, driver_ohm = 0;
   double rise_per_k = 0, rated_c = 0, ambient_c = 0;
-  /// Coulomb friction; excess of static friction over it [N m].
+  /// Coulomb friction torque, and excess of the static friction torque over it [N m].
   double friction = 0, static_more = 0;
   double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/rad^2].
-  double viscous = 0;        ///< [N m s/rad]
+  double viscous = 0;        ///< Viscous friction [N m s/rad].
   double gear_loss = 0;      ///< Friction of the gear per torque from the cable [1].
   double backlash_m = 0, min_rest_m = 0;
   /// Thermal conductances from winding to housing, and from housing to air.
   double winding_w_per_k = 0, housing_w_per_k = 0;
   double winding_k_per_j = 0, housing_k_per_j = 0;  ///< 1 / heat capacity.
-  double servo_gain = 0, servo_damping = 0;         ///< [1/m], [s/m]
+  double servo_gain = 0, servo_damping = 0;         ///< Units: [1/m], [s/m].
 };
 
 struct SupplyTable {
@@ -47,7 +47,7 @@ struct SupplyTable {
 
 struct AttachmentTable {
   int body = 0;
-  double p_P[3] = {};  ///< [m]
+  double p_P[3] = {};  ///< Position in frame P [m].
   int spot = 0;        ///< For cables: index of the point among all attachment points.
 };
 
@@ -63,7 +63,7 @@ struct ShapeTable {
   const int* beside = nullptr;  ///< For terrain boxes: other terrain boxes that touch this one.
   int beside_count = 0;
   SeamList seams;    ///< For terrain boxes: adjacent pieces.
-  bool led = false;  ///< Its body is kinematic or has a joint.
+  bool led = false;  ///< Whether the shape's body is kinematic or has a joint.
 
   /// Returns whether adjacent pieces must be checked. Always inline: see View.
   [[gnu::always_inline]] bool IsJoined() const noexcept {
@@ -108,7 +108,7 @@ struct FrictionTable {
 struct PlaneTable {
   double normal[3] = {}, tangent1[3] = {}, tangent2[3] = {};
   double offset_m = 0;   ///< normal . x for points x of the plane.
-  bool upright = false;  ///< Its normal and tangents are z, x and y.
+  bool upright = false;  ///< Whether the normal and tangents are z, x and y.
 };
 
 struct ShapePairTable {
@@ -129,14 +129,14 @@ struct WorldPairTable {
   bool joined = false;     ///< `b` is the world, and some of its boxes touch each other.
 };
 
-/// Two bodies that may touch: impulses move `a`; they move `b`, too, or it is kinematic. The pairs
-/// of their shapes are not stored, because their number grows with the square of the model
+/// Two bodies that may touch: impulses move `a`; `b` is moved by impulses, too, or kinematic. The
+/// pairs of their shapes are not stored, because their number grows with the square of the model
 /// (contacts/moving_pairs.h).
 struct MovingPair {
   int a = 0, b = 0;
 };
 
-/// Body that is kept apart from the body whose list contains it, and has a larger number.
+/// Entry in the list of a body A: a body with a larger number that cannot collide with A.
 struct ApartTable {
   int body = 0;
   int shapes_before = 0;  ///< Shapes of all previous bodies of the list.

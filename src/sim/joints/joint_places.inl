@@ -16,10 +16,10 @@ TAUT_INLINE W MissOf(JointMeasure measure, const JointTable& j, W value) noexcep
   return measure == JointMeasure::kDistance ? value - W::Splat(j.rest) : value;
 }
 
-/// Projects velocities onto the joint constraints, completely or by a fraction (eq. 7a). It applies
-/// impulses, so momenta are conserved and energy never increases. `given(body)`: velocities of a
-/// kinematic body; `skip(joint)`: lanes in which a joint keeps its velocities. Calls took(number of
-/// the row in the model, impulse, row) for each row.
+/// Projects velocities onto the joint constraints, completely or by a fraction (eq. 7a). The
+/// projection applies impulses, so momenta are conserved and energy never increases. `given(body)`:
+/// velocities of a kinematic body; `skip(joint)`: lanes in which a joint keeps its velocities.
+/// Calls took(number of the row in the model, impulse, row) for each row.
 template <class W, class F, class S, class G>
 void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
                        W share, const F& given, const S& skip, const G& took) noexcept {

@@ -3,9 +3,9 @@
 ///
 /// A joint force is implicit along its direction. Across it, the force is explicit and acts as a
 /// spring with a stiffness proportional to the load; the step must resolve its oscillation. For
-/// most worlds a cheap bound per body suffices. If it is exceeded, power iteration finds the
-/// highest natural frequency that the joints allow. Joints integrated together with stiff cables
-/// are implicit in all directions and have no such limit.
+/// most worlds a cheap bound per body suffices. If this bound is exceeded, power iteration finds
+/// the highest natural frequency that the joints allow. Joints integrated together with stiff
+/// cables are implicit in all directions and have no such limit.
 #pragma once
 
 #include "sim/data/rows.h"

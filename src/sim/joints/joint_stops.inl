@@ -101,9 +101,9 @@ W ReboundOf(W e, W before, W kick, W bend, W gap, W h) noexcept {
 ///
 /// A limit that had a force and is closed reverses the small residual velocity of the previous step
 /// (eq. 3), so that it does no work. The reversal of a larger velocity, for example after a snatch,
-/// would repeat in every step; then the bodies end the step at rest on their arc. Other limits let
-/// their bodies approach until contact. Beyond a limit, bodies return no faster than the forces of
-/// this step would move them further, as in a penetrating contact (contact.md, eq. 2).
+/// would repeat in every step; in this case, the bodies end the step at rest on their arc. Other
+/// limits let their bodies approach until contact. Beyond a limit, bodies return no faster than the
+/// forces of this step would move them further, as in a penetrating contact (contact.md, eq. 2).
 /// StageJointPlaces closes the remaining distance of about a step.
 template <class W>
 void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
@@ -141,9 +141,9 @@ TAUT_INLINE MaskOf<W> Presses(const HeldRow<W>& row) noexcept {
   return (row.live > zero) & (row.l[0] > zero);
 }
 
-/// Returns the lanes in which displacements close a limit. It had a force in this step, and is
-/// closed or was passed. If it was passed by more than the motion of one step (initial or set
-/// state), eq. 4 returns the bodies instead.
+/// Returns the lanes in which displacements close a limit. Such a limit had a force in this step,
+/// and is closed or was passed. If the bodies passed it by more than the motion of one step
+/// (initial or set state), eq. 4 returns the bodies instead.
 template <class W>
 MaskOf<W> IsClosedAtEnd(const HeldRow<W>& row, W gap) noexcept {
   const W zero = W::Splat(0.0);

@@ -55,7 +55,7 @@ TAUT_INLINE W HingeAngle(const JointPlace<W>& p, W expected) noexcept {
 }
 
 /// Returns the rotation from a's axes to b's axes as a vector in W: axis * angle, 0..pi. At half a
-/// turn, it is one of the two possible vectors.
+/// turn, the result is one of the two possible vectors.
 template <class W>
 V3<W> TurnOf(const JointPlace<W>& p) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0), tiny = W::Splat(1e-300);
@@ -128,8 +128,8 @@ JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const J
           reach * simd::Atan2(sine, Dot(p.axes_a.r0, p.axes_b.r0))};
 }
 
-/// Returns the same with the sign of the row's role. The value of a joint limit is the remaining
-/// distance, so its impulse pushes.
+/// Returns direction and value of a row's measure, with the sign of the row's role. The value of a
+/// joint limit is the remaining distance, so its impulse pushes.
 template <class W>
 JointDirection<W> DirectionOf(const JointTable& j, const JointRowTable& row, const JointPlace<W>& p,
                               W angle) noexcept {
@@ -154,8 +154,8 @@ TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const T
 /// that impulses move.
 ///
 /// A joint that constrains a point pushes each body at the body's own joint point (joints.md,
-/// section 2). At the point of the other body, which differs by the gap, it would spin a thin rod
-/// about its axis, and redundant rows would become independent.
+/// section 2). A push at the point of the other body, which differs by the gap, would spin a thin
+/// rod about its axis and make redundant rows independent.
 template <class W>
 void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
                    const JointPlace<W>& p, const JointDirection<W>& d, JointRow<W>& row) noexcept {
@@ -176,7 +176,7 @@ void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j
   row.FinishMasses();
 }
 
-/// a + turn x a + turn x (turn x a) / 2
+/// Returns a + turn x a + turn x (turn x a) / 2.
 template <class W>
 TAUT_INLINE V3<W> Turned(const V3<W>& turn, const V3<W>& a) noexcept {
   const V3<W> once = Cross(turn, a);

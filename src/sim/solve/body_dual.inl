@@ -105,7 +105,7 @@ class BodyDual {
     for (int c = 0; c < kContacts; ++c) AddVelocity(rows_[c].links[0], v, w, u + 3 * c);
   }
 
-  /// u += W dl
+  /// Updates velocities: u += W dl.
   void AddChange(const W* dl) noexcept {
     for (int i = 0; i < kSize; ++i) {
       W change = w_[i][0] * dl[0];

@@ -134,10 +134,11 @@ class BodyMatrix {
     return symmetric_ ? FactorSymmetric<false>() : FactorGeneral<false>();
   }
 
-  /// x <- A^-1 x, 6 numbers per unknown. Entries beyond the size of an unknown do not change.
+  /// Solves in place: x <- A^-1 x, 6 numbers per unknown. Entries beyond the size of an unknown do
+  /// not change.
   void Solve(Num* x) const noexcept { bodies_only_ ? SolveAs<true>(x) : SolveAs<false>(x); }
 
-  /// x <- A^-T x.
+  /// Solves the transposed system in place: x <- A^-T x.
   void SolveTransposed(Num* x) const noexcept {
     if (symmetric_) return Solve(x);
     Rising<ForwardTransposedU, false>(x);
@@ -208,7 +209,7 @@ class BodyMatrix {
     }
   }
 
-  /// a -= l u over the N eliminated velocities.
+  /// Computes a -= l u over the N eliminated velocities.
   template <int N>
   static void Subtract(Num* a, const Num* l, const Num* u) noexcept {
     for (int x = 0; x < kDofs; ++x) {
@@ -221,7 +222,7 @@ class BodyMatrix {
       for (int y = 0; y < kDofs; ++y) a[kDofs * x + y] = line[y];
     }
   }
-  /// a -= l u^T.
+  /// Computes a -= l u^T over the N eliminated velocities.
   template <int N>
   static void SubtractTransposed(Num* a, const Num* l, const Num* u) noexcept {
     Num transposed[kBlock];

@@ -10,14 +10,14 @@ namespace taut::sim {
 template <class Num>
 struct Solid {
   V3<Num> x;        ///< Center of mass of the body in W [m].
-  Num mass;         ///< [kg]
+  Num mass;         ///< Mass [kg].
   S3<Num> inertia;  ///< In W [kg m^2].
 };
 
 template <class Num>
 struct CommonTurn {
-  V3<Num> centre;  ///< [m]
-  V3<Num> w;       ///< [rad/s]
+  V3<Num> centre;  ///< Common center of mass in W [m].
+  V3<Num> w;       ///< Angular velocity of the rotation [rad/s].
 
   /// Computes the rotation with the angular momentum `momentum`. `solid(k)`: body k of `count`.
   template <class F>

@@ -1,9 +1,9 @@
 /// Impacts: restitution of contacts and joint limits, all together in the step of the impact
 /// (docs/theory/contact.md, section 3). The problem is solved without rebounds, then again with the
-/// rebounds of the contacts that took part. Contacts that get a force by this join. Friction at
-/// several contacts may cause too much energy. Then the result is interpolated toward the first
-/// solution as far as necessary, which is admissible, because the problem is linear between two
-/// solutions and cones are convex.
+/// rebounds of the contacts that took part. Contacts that get a force from these rebounds take part
+/// in the next solve. If friction at several contacts adds energy, the result is interpolated
+/// toward the first solution as far as necessary. The interpolated result is admissible, because
+/// the problem is linear between two solutions and cones are convex.
 ///
 /// A Problem is a solver with this interface:
 ///   ForEach(f)       f(law, first row) for all constraints

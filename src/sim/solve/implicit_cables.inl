@@ -2,8 +2,8 @@
 /// implicit integration (docs/theory/cables.md, section 3).
 ///
 /// First stage: the force is a discrete gradient in the lengths, and bodies rotate by the Cayley
-/// map of their mean angular velocity. So energy and momenta are conserved up to rounding at any
-/// stiffness. Second stage: the force is evaluated at the end.
+/// map of their mean angular velocity. Therefore energy and momenta are conserved up to rounding at
+/// any stiffness. Second stage: the force is evaluated at the end.
 #pragma once
 
 #include "math/scalar.h"
@@ -19,12 +19,12 @@ using simd::M3;
 using simd::RotationOf;
 using simd::V3;
 
-/// [a] M, with [a] z = a x z.
+/// Returns [a] M, where [a] z = a x z.
 template <class Num>
 TAUT_INLINE M3<Num> CrossTimes(const V3<Num>& a, const M3<Num>& m) noexcept {
   return {a.y * m.r2 - a.z * m.r1, a.z * m.r0 - a.x * m.r2, a.x * m.r1 - a.y * m.r0};
 }
-/// M [a].
+/// Returns M [a].
 template <class Num>
 TAUT_INLINE M3<Num> TimesCross(const M3<Num>& m, const V3<Num>& a) noexcept {
   return {Cross(m.r0, a), Cross(m.r1, a), Cross(m.r2, a)};
@@ -38,7 +38,7 @@ template <class Num>
 TAUT_INLINE M3<Num> Scaled(Num f, const M3<Num>& m) noexcept {
   return {f * m.r0, f * m.r1, f * m.r2};
 }
-/// f (1 - a b^T)
+/// Returns f (1 - a b^T).
 template <class Num>
 TAUT_INLINE M3<Num> Across(Num f, const V3<Num>& a, const V3<Num>& b) noexcept {
   const Num x = f * a.x, y = f * a.y, z = f * a.z;
@@ -56,7 +56,7 @@ TAUT_INLINE V3<Num> CayleyTurn(const V3<Num>& h, Num scale, const V3<Num>& y) no
   const V3<Num> t = Cross(h, y);
   return y + (scale + scale) * (t + Cross(h, t));
 }
-/// (1 - [h])^-1
+/// Returns (1 - [h])^-1.
 template <class Num>
 TAUT_INLINE M3<Num> CayleyInverse(const V3<Num>& h, Num scale) noexcept {
   const Num one = Num::Splat(1.0);
@@ -68,7 +68,7 @@ TAUT_INLINE M3<Num> CayleyInverse(const V3<Num>& h, Num scale) noexcept {
 /// Stage of a step.
 template <class Num>
 struct ImplicitStage {
-  Num h;        ///< [s]
+  Num h;        ///< Length of the stage [s].
   bool at_end;  ///< Forces at the end of the stage (implicit Euler).
 };
 
@@ -167,7 +167,7 @@ class ImplicitCables {
     }
   }
 
-  /// res <- final momenta minus momenta under all forces except contacts.
+  /// Computes res: final momenta minus momenta under all forces except contacts.
   void Evaluate(const ImplicitStage<Num>& stage, const Num* U, Num* res) noexcept {
     const Num one = Num::Splat(1.0), half = Num::Splat(0.5);
     for (int k = 0; k < count_; ++k) {
@@ -204,9 +204,9 @@ class ImplicitCables {
 
   /// Adds the derivative of the last Evaluate. `missing`: minus the residual, including contacts.
   /// Torque balances are multiplied by (1 - [half]), which transforms them to the frame halfway
-  /// through the rotation. There, a force on the axis of a slender body causes only transverse
-  /// rotation, at any angle. Otherwise the first Newton steps would spin the body about its axis,
-  /// where its moment of inertia is nearly 0.
+  /// through the rotation. In that frame, a force on the axis of a slender body causes only
+  /// transverse rotation, at any angle. Otherwise the first Newton steps would spin the body about
+  /// its axis, where its moment of inertia is nearly 0.
   void AddTo(const ImplicitStage<Num>& stage, const Num* missing,
              BodyMatrix<Num>& matrix) noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);

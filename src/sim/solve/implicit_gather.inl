@@ -60,7 +60,7 @@ void ImplicitIsland<W>::AddJoint(int i, const Number& number) noexcept {
     row.source = r;
     row.along = OfLane<Num>(from.lin, lane_);
     row.reach = Num::Splat(table.reach_m);
-    // The mean of eq. 3 over the step has half its compliance.
+    // The mean of eq. 3 over the step has half the compliance of eq. 3.
     row.stiffness = Num::Splat(2.0) / (Num::Splat(kHeldCompliance) * OfLane<Num>(from.A, lane_));
     row.last_force = OfLane<Num>(s_.joint_load[r], lane_);
     const MeasuredAxes axes = AxesOf(m_.joint_rows[r].measure);

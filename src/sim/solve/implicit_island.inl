@@ -139,7 +139,8 @@ class ImplicitIsland {
     const ImplicitBody<Num>& b = mem_.body[k];
     return {b.ahead * at.v + b.behind * b.v, b.ahead * at.w + b.behind * b.w};
   }
-  /// to <- velocities of all bodies: own(k) for integrated ones, `prescribed` for others
+  /// Sets `to` to the velocities of all bodies: own(k) for integrated, `prescribed` for other
+  /// bodies.
   template <class Own>
   void StoreVelocities(Num* to, Twist<Num> Unknown<Num>::*prescribed,
                        const Own& own) const noexcept {
@@ -349,8 +350,8 @@ class ImplicitIsland {
   double Norm(const Num* d) const noexcept;
   /// Returns the effect of rounding errors on the unknowns of a stage [m/s].
   double Noise() const noexcept;
-  /// step <- change of the unknowns for the residual `res`. `given`: impulses are given; otherwise
-  /// they are solved for, too.
+  /// Sets `step` to the change of the unknowns for the residual `res`. `given`: impulses are given;
+  /// otherwise this function solves for them, too.
   bool Step(const Num* res, bool given, Num* step) noexcept;
   void AddImpulses(Num* f) noexcept;
   /// Solves a stage. `given`: impulses are given.
@@ -366,7 +367,8 @@ class ImplicitIsland {
   /// Sets a point of `body`, whose index in the island is `number`. If the body is not in the
   /// island (-1), the point is at the start of the step.
   void SetPoint(int body, int number, const double* own_P, ImplicitPoint<Num>& p) noexcept;
-  /// res <- residual at the velocities U and at the fraction `way` of the joints' last Newton step
+  /// Sets `res` to the residual at the velocities U and at the fraction `way` of the joints' last
+  /// Newton step.
   void Evaluate(const Num* U, double way, Num* res) noexcept {
     cables_.Evaluate(stage_, U, res);
     joints_.Evaluate(stage_, way, res);
@@ -386,7 +388,7 @@ class ImplicitIsland {
   Target target_;
   int lane_;
   double step_s_;
-  Num kinetic_{}, elastic_{};  ///< At the start of the step [J].
+  Num kinetic_{}, elastic_{};  ///< Energies at the start of the step [J].
   ImplicitStage<Num> stage_{};
   bool damped_ = false, alone_ = true, good_ = true, failed_ = false, is_jammed_ = false;
 };

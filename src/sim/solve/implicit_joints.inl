@@ -3,8 +3,8 @@
 ///
 /// The rows are discrete gradients of their coordinates: mean lever arms, mean axes, and for a
 /// distance the mean direction. With the Cayley rotation, their product with the mean velocities is
-/// exactly the change of the coordinate. So joints neither create energy nor drift apart, and
-/// linear and angular momentum are conserved.
+/// exactly the change of the coordinate. Therefore joints neither create energy nor drift apart,
+/// and linear and angular momentum are conserved.
 #pragma once
 
 #include "sim/data/implicit_memory.h"

@@ -85,7 +85,7 @@ bool ImplicitIsland<W>::Newton(bool given) noexcept {
     if (!(now - now == 0)) return false;
     const double near = 1e-7 * speed + 30 * noise;
     const bool converges = i > 0 && now < 0.1 * before;
-    // Quadratic convergence: the next step would be this^3 / before^2.
+    // Quadratic convergence: the length of the next step would be now^3 / before^2.
     const bool solved = converges && now * now * now <= 1e-4 * least * before * before;
     const bool stays = i > 3 && now > 0.5 * before && now < near && before < near;
     before = now;

@@ -4,7 +4,7 @@
 /// rows per body would be as many as the contacts of all lanes together.
 ///
 /// A packed contact has a link to each body that any lane needs. In other lanes, the link is zero
-/// and adds exactly nothing.
+/// and adds exactly zero.
 #pragma once
 
 #include "sim/data/rows.h"

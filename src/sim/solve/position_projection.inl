@@ -55,7 +55,8 @@ void LaneSolve<W>::Displacing(ContactPoint<L, 2>& c, double deep, double gap) co
   for (L& l : c.l) l = zero;
 }
 
-/// Returns whether only contacts and joints between moving bodies of the island displaced it.
+/// Returns whether only contacts and joints between moving bodies of the island displaced the
+/// island.
 template <class W>
 bool LaneSolve<W>::IsAlone() const noexcept {
   const Pool<ContactPoint<L, 2>>& contacts = mem_.island.pools;

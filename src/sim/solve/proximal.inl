@@ -71,7 +71,7 @@ class Proximal {
       if (stays) break;
       carried = ended_well && residual - residual == 0;
       if (ended_well) {
-        // Approach a compliance at which a round failed before in smaller steps.
+        // Approaches, in smaller steps, a compliance at which an earlier round failed.
         const bool near_failure = failed_at > 0 && 0.1 * e <= 1.01 * failed_at;
         e *= near_failure ? 0.3 : 0.1;
         if (e < kLeastSoftness) e = kLeastSoftness;
@@ -119,8 +119,8 @@ class Proximal {
   }
 
   /// Runs one round with compliance e from m.trial_v. Results: impulses in m.l, velocities in
-  /// m.trial_v. Returns true if it converged. Then the impulses come from the linear equations of
-  /// the last step, which are free of the noise that a small e amplifies.
+  /// m.trial_v. Returns true if the round converged. The impulses of a converged round come from
+  /// the linear equations of the last step, which are free of the noise that a small e amplifies.
   bool Round(double softness) noexcept {
     const Num e = Num::Splat(softness);
     island_.Measure(m_.trial_v, m_.u);
@@ -136,8 +136,8 @@ class Proximal {
         if (!(slope < 0)) break;
       }
       island_.Measure(m_.direction, m_.du);
-      // If all branches are the same at its end, the step solves the equations and needs no line
-      // search.
+      // If all branches are the same at the end of the step, the step solves the equations without
+      // a line search.
       StepTo(1);
       if (theta == 1 && !symmetric && SameBranches(e)) {
         TakeLinear();
@@ -159,7 +159,7 @@ class Proximal {
     return false;
   }
 
-  /// u2 <- u + alpha du
+  /// Moves along the step: u2 <- u + alpha du.
   void StepTo(double alpha) noexcept {
     const Num step = Num::Splat(alpha);
     for (int i = 0; i < island_.rows; ++i) m_.u2[i] = m_.u[i] + step * m_.du[i];
@@ -177,7 +177,7 @@ class Proximal {
       island_.AddForce(law, minus, m_.rhs);
     });
   }
-  /// rhs <- M (v - v_free)
+  /// Computes rhs <- M (v - v_free).
   void Gradient() noexcept {
     for (int b = 0; b < island_.body_count; ++b) {
       Num free[kDofs], x[kDofs];
@@ -187,8 +187,8 @@ class Proximal {
     }
   }
 
-  /// direction <- -(M + J^T G J)^-1 F. Returns the slope direction . F, or 0 if the matrix is
-  /// singular.
+  /// Computes direction <- -(M + J^T G J)^-1 F. Returns the slope direction . F, or 0 if the matrix
+  /// is singular.
   double Direction(bool symmetric) noexcept {
     matrix_.Start(island_.bodies, symmetric);
     island_.pools.ForEach([&](auto& law, auto&, int, int cell) { matrix_.Add(law, m_.g + cell); });
@@ -277,7 +277,7 @@ class Proximal {
     return same;
   }
 
-  /// l <- l(v) - G J d
+  /// Computes the impulses of the linear equations: l <- l(v) - G J d.
   void TakeLinear() noexcept {
     island_.pools.ForEach([&](auto& law, auto&, int row, int cell) {
       const int R = RowsOf(law);

@@ -47,7 +47,7 @@ class IslandTangent {
   /// Returns the factored M + J^T G J of the unknowns that are not prescribed.
   const BodyMatrix<Num>& matrix() const noexcept { return matrix_; }
 
-  /// dv, dl <- effect of p and b (eq. 29). dv may be p.
+  /// Computes dv and dl, the effect of p and b (eq. 29). dv may be p.
   void Apply(const Num* p, const Num* b, Num* dv, Num* dl) noexcept {
     const Num zero = Num::Splat(0.0);
     for (int i = 0; i < size(); ++i) m_.trial_v[i] = i < solved() ? zero : p[i];
@@ -90,7 +90,7 @@ class IslandTangent {
   int size() const noexcept { return kDofs * island_.body_count; }
   int solved() const noexcept { return kDofs * island_.pattern.count; }
 
-  /// out <- -G x, or -G^T x; not in place.
+  /// Computes out <- -G x, or -G^T x; not in place.
   void TimesMinusG(const Num* x, Num* out, bool transposed) const noexcept {
     island_.pools.ForEach([&](auto& law, auto&, int row, int cell) {
       const int R = RowsOf(law);

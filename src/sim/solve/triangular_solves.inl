@@ -7,7 +7,7 @@
 
 namespace taut::sim {
 
-/// x <- L^-1 x, for both factorizations.
+/// Solves L x' = x in place, for both factorizations: x <- L^-1 x.
 template <class Num>
 struct BodyMatrix<Num>::ForwardL {
   template <int N>
@@ -29,7 +29,7 @@ struct BodyMatrix<Num>::ForwardL {
   }
 };
 
-/// x <- L^-T x, or with `kScaled` L^-T D^-1 x.
+/// Solves in place: x <- L^-T x, or with `kScaled` x <- L^-T D^-1 x.
 template <class Num>
 template <bool kScaled>
 struct BodyMatrix<Num>::BackwardTransposedL {
@@ -53,7 +53,7 @@ struct BodyMatrix<Num>::BackwardTransposedL {
   }
 };
 
-/// x <- U^-1 x.
+/// Solves U x' = x in place: x <- U^-1 x.
 template <class Num>
 struct BodyMatrix<Num>::BackwardU {
   template <int N>
@@ -76,7 +76,7 @@ struct BodyMatrix<Num>::BackwardU {
   }
 };
 
-/// x <- U^-T x.
+/// Solves U^T x' = x in place: x <- U^-T x.
 template <class Num>
 struct BodyMatrix<Num>::ForwardTransposedU {
   template <int N>

@@ -2,12 +2,12 @@
 /// method in all impulses on the Delassus operator, in all lanes at once (docs/theory/contact.md,
 /// section 5).
 ///
-/// Cables are eliminated first by a symmetric factorization. It stays valid while the set of taut
-/// cables is the same and no cable becomes slack or taut in the step. The remaining system contains
-/// only the contacts; it is as small as for one body and has its own Newton iterations. The rows
-/// are the union of the rows of all lanes; in lanes without a row, its equation is 1 x = 0. The
-/// result of a lane does not depend on other lanes, because the order of its rows is always the
-/// same.
+/// Cables are eliminated first by a symmetric factorization. The factorization stays valid while
+/// the set of taut cables is the same and no cable becomes slack or taut in the step. The remaining
+/// system contains only the contacts; it is as small as for one body and has its own Newton
+/// iterations. The rows are the union of the rows of all lanes; in lanes without a row, its
+/// equation is 1 x = 0. The result of a lane does not depend on other lanes, because the order of
+/// its rows is always the same.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -126,7 +126,7 @@ class WorldDual {
     Velocities();
     Measure();
   }
-  /// v <- v_free + M^-1 J^T l
+  /// Computes velocities: v <- v_free + M^-1 J^T l.
   void Velocities() noexcept {
     for (int b = 0; b < m_.body_count; ++b) mem_.v[b] = {work_.bodies[b].v, work_.bodies[b].w};
     ForEach([&](auto& law, int row) {
@@ -136,7 +136,7 @@ class WorldDual {
       }
     });
   }
-  /// u <- J v
+  /// Computes constraint velocities: u <- J v.
   void Measure() noexcept {
     ForEach([&](auto& law, int row) {
       constexpr int R = LawOf<decltype(law)>::kRows;
@@ -160,8 +160,8 @@ class WorldDual {
   /// Returns row i of the upper triangle: Row(i)[j], j >= i.
   TAUT_INLINE W* Row(int i) const noexcept { return mem_.a + i * (2 * rows_ - i - 1) / 2; }
 
-  /// a <- upper triangle of the Delassus operator W = J M^-1 J^T, assembled body by body from the
-  /// rows on the same body.
+  /// Sets `a` to the upper triangle of the Delassus operator W = J M^-1 J^T, assembled body by body
+  /// from the rows on the same body.
   void BuildMatrix() noexcept {
     const int n = rows_;
     for (int i = 0; i < n; ++i) {
@@ -274,7 +274,7 @@ class WorldDual {
     for (int p = 0; p < P; ++p) Row(k + p)[k + p] = inverse[p];
   }
 
-  /// y += f x. x and y must not overlap.
+  /// Computes y += f x. x and y must not overlap.
   TAUT_INLINE static void AddMultiple(W* y, const W* x, W f, int count) noexcept {
     TAUT_NO_OVERLAP for (int i = 0; i < count; ++i) y[i] += f * x[i];
   }

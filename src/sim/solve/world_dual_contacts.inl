@@ -40,7 +40,7 @@ MaskOf<W> WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
   return busy;
 }
 
-/// Assembles Newton's equations of the contacts: c d = d.
+/// Assembles Newton's equations c x = d of the contacts. The solution x replaces d.
 template <class W, class Contacts>
 void WorldDual<W, Contacts>::LinearizeContacts(int size) noexcept {
   const int first = cables_;
@@ -60,7 +60,7 @@ void WorldDual<W, Contacts>::LinearizeContacts(int size) noexcept {
   });
 }
 
-/// d <- c^-1 d without pivoting; lanes where this fails do not converge.
+/// Solves Newton's equations without pivoting: d <- c^-1 d. Lanes where this fails do not converge.
 template <class W, class Contacts>
 void WorldDual<W, Contacts>::EliminateContacts(int size) noexcept {
   W* const x = mem_.d;

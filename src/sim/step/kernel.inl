@@ -1,5 +1,5 @@
 /// Simulation step: the sequence of its stages (docs/theory/integrator.md). Each step_*.cpp
-/// includes it for one instruction set, with its register width.
+/// includes this file for one instruction set, with its register width.
 ///
 /// Moreau's midpoint scheme: half a drift, forces and contacts at the middle, half a drift. This
 /// code uses no standard library, so that no shared template is compiled with instructions that
@@ -234,8 +234,8 @@ enum class Stage {
   kCount
 };
 
-/// Receives the end of each stage. This class does nothing and has no cost; benchmarks/ has one
-/// with a clock.
+/// Observer that is called at the end of each stage. This class does nothing at no cost; the
+/// observer in benchmarks/ measures times.
 struct NoWatch {
   TAUT_INLINE void Begin() noexcept {}
   TAUT_INLINE void Mark(Stage) noexcept {}

@@ -9,7 +9,7 @@
 namespace taut::sim {
 
 /// Computes the readings of one cable at the end of the step. `ends`: buffer for its attachments.
-/// With a compile-time number of two, they stay in registers.
+/// With a compile-time number of two attachments, the buffer stays in registers.
 template <bool kTwo, class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {

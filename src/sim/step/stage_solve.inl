@@ -67,8 +67,8 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
 }
 
 /// Fits the contact biases of each body to rigid motions (docs/theory/contact.md, eq. 12): bodies
-/// with three or more contacts, and bodies in islands of several bodies. Two contacts of a body
-/// that is an island by itself are solved to rounding without this.
+/// with three or more contacts, and bodies in islands of several bodies. Without this fit, two
+/// contacts of a body that is an island by itself are solved up to rounding.
 template <class W, class M>
 void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   constexpr int kFewest = 3;
