@@ -52,9 +52,8 @@ CableSpanState WorldBatch::CableSpan(int world, int cable, int span) const noexc
 struct WorldBatch::Impl::LaidCable {
   std::vector<PathPoint<Vec3>> points;
   std::vector<int> bodies;  ///< Per point; the index of the world follows the last body.
-  std::vector<int>
-      /// Per point: number of the span that ends there. The next span starts at the next point.
-      spans;
+  /// Per point: number of the span that ends at the point. The next span starts at the next point.
+  std::vector<int> spans;
   std::vector<Wheel<Vec3>> wheels;
 };
 

@@ -324,8 +324,8 @@ class Compiler {
   Tables& t_;
   const ModelDef& def_;
   std::vector<Frame> frames_;
-  std::vector<std::vector<std::size_t>>
-      shapes_of_;                    ///< Per body and for the world, without surfaces.
+  /// Indices of the shapes of each body and of the world, without surfaces.
+  std::vector<std::vector<std::size_t>> shapes_of_;
   std::vector<std::size_t> ground_;  ///< Indices of the surfaces among the shapes.
 };
 

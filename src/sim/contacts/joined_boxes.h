@@ -1,7 +1,7 @@
 /// Adjacent terrain boxes and other adjacent terrain form one surface. A contact with one of the
 /// boxes may then be inside this surface (docs/theory/ground.md, sections 8 and 9).
 ///
-/// Part of a step: no standard library.
+/// A step includes this header, so it does not use the standard library.
 #pragma once
 
 #include <stdint.h>

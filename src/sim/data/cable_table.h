@@ -44,8 +44,8 @@ struct SlipTable {
   int at = 0;      ///< Path point; for wheels, where the cable reaches the wheel; unused for bends.
   int wheel = -1;  ///< Index among all wheels; -1: an eyelet or a bend.
   double friction = 0;
-  double start_place = kNotHeld;  ///< Middle of the arc in the described pose
-                                  ///< (`MiddleOf`) [rad]; kNotHeld: no wheel.
+  /// Middle of the arc in the described pose (`MiddleOf`) [rad]; kNotHeld: no wheel.
+  double start_place = kNotHeld;
 };
 
 /// Cable with wrapping around terrain edges or rods (cable_wrapping.inl). Such a cable has two

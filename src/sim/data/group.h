@@ -32,9 +32,8 @@ struct Group {
   int touches_used = 0;       ///< Length of the longest list of touches of a lane in the last step.
   int* forced_nodes = nullptr;  ///< Nodes that ever had an external force, ascending.
   int forced_count = 0;
-  NearParts* kept =
-      /// Cache of near parts for pair `WorldPairTable::kept` in lane j: [kept * lanes + j].
-      nullptr;
+  /// Caches of near parts: for pair `WorldPairTable::kept` in lane j at [kept * lanes + j].
+  NearParts* kept = nullptr;
   MovingPair* near = nullptr;    ///< Bodies near each other in some lane, ascending.
   int near_count = 0;            ///< Number of pairs in `near`; -1: more than View::near_capacity.
   bool sensed = false;           ///< The kSensed rows are up to date. Shared by const readers.

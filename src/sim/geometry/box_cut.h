@@ -1,5 +1,6 @@
 /// Entry and exit of a straight cable span through a terrain box (docs/theory/cables.md, section
-/// 6), for one world or for all lanes. Part of a step, so without the standard library.
+/// 6), for one world or for all lanes. A step includes this header, so it does not use the standard
+/// library.
 #pragma once
 
 #include "math/scalar.h"

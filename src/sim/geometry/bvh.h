@@ -1,7 +1,7 @@
 /// Bounding volume hierarchy (BVH) of static shapes or of moving bodies, for the broad phase.
 ///
-/// A tree instead of a uniform grid, because no cell size suits terrain with stones next to walls
-/// of many meters.
+/// A tree replaces a uniform grid, because no cell size suits terrain with stones next to walls of
+/// many meters.
 #pragma once
 
 #include <stdint.h>
@@ -23,7 +23,7 @@ struct TreeNode {
 };
 
 /// Builds the tree of `count` leaves, at least one, in 2 * count - 1 nodes. Reorders the leaves.
-/// Their bounds must be finite.
+/// The bounds of the leaves must be finite.
 void BuildTree(TreeNode* leaves, int count, TreeNode* tree) noexcept;
 
 Shape MovedShape(const Shape& shape, const ShapePose& pose) noexcept;
@@ -56,7 +56,7 @@ void EachNear(const TreeNode* tree, int count, const Bounds& bounds, double reac
   }
 }
 
-/// Sets the bits of these shapes: bit i % 64 of marks[i / 64].
+/// Sets a bit for each shape i that EachNear visits: bit i % 64 of marks[i / 64].
 void MarkNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,
               uint64_t* marks) noexcept;
 

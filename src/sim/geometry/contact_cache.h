@@ -1,7 +1,7 @@
-/// Cache of the parts of a height field near a rod or a ball. It is valid until the shape has moved
-/// by more than a slack; until then, only these parts are tested (surface_parts.h).
-/// Omitted parts can have no contact within the slack. So results are bit-identical with and
-/// without the cache, at any age of it, and the cache is no part of the state.
+/// Cache of the parts of a height field near a rod or a ball. The cache is valid until the shape
+/// has moved by more than a slack; until then, only these parts are tested (surface_parts.h).
+/// Omitted parts can have no contact within the slack. Therefore results are bit-identical with and
+/// without the cache, at any age of the cache, and the cache is not part of the state.
 #pragma once
 
 #include "math/vec.h"
@@ -17,7 +17,7 @@ struct SurfacePart {
   enum Kind { kFirstFace, kSecondFace, kEdgeX, kEdgeY, kDiagonal, kCorner };
   /// Largest offset from the reference cell of the list [cells].
   static constexpr int kFarthest = 4095;
-  short di, dj_kind;  ///< 8 dj + kind
+  short di, dj_kind;  ///< Cell offsets; dj_kind = 8 dj + kind.
 };
 
 /// Relevant parts, in the order of the search.
@@ -40,7 +40,7 @@ struct NearParts {
 
   Vec3 from, to;   ///< Centerline when the cache was filled [m].
   double limit_m;  ///< Valid for search limits up to this; 0: empty.
-  int looks;       ///< Uses since it was filled, or searches while it was empty.
+  int looks;       ///< Uses since the cache was filled, or searches while it was empty.
   bool by_x;       ///< Parts are sorted along x; false: along y.
   bool above[2];   ///< Within the slack, this end is above the whole field around it.
   bool over;       ///< Within the slack, the line is below no edge.

@@ -34,13 +34,13 @@ class ManyTouches {
 
   double least_gap_m() const noexcept { return least_gap_m_; }
 
-  /// Adds the points to a list. If there are too many, it selects the nearest point, then among
-  /// points of equal gap the outermost ones in twelve directions. They support the same loads as
-  /// all points.
+  /// Adds the points to a list. If there are too many, this function selects the nearest point,
+  /// then among points of equal gap the outermost points in twelve directions. The selected points
+  /// support the same loads as all points.
   void AddTo(TouchList& list) noexcept {
     if (count_ > kMaxPointsPerPair) Choose();
     bool taken[kMaxPointsPerPair] = {};
-    // Points whose id is a valid feature keep it.
+    // Points whose id is a valid feature keep this id.
     for (int round = 0; round < 2; ++round) {
       for (int i = 0; i < count_; ++i) {
         const One& one = all_[i];

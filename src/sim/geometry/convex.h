@@ -1,5 +1,5 @@
-/// Convex polyhedron in W (a hull or a box), so that both share narrow-phase code. Part of a step,
-/// so without the standard library.
+/// Convex polyhedron in W (a hull or a box), so that both share narrow-phase code. A step includes
+/// this header, so it does not use the standard library.
 #pragma once
 
 #include "sim/geometry/hull.h"

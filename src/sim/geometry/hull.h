@@ -1,6 +1,7 @@
 /// Tables of a convex hull (corners, faces, edges) for contacts.
 ///
-/// Part of a step, so without the standard library. hull_build.h fills them in.
+/// A step includes this header, so it does not use the standard library. hull_build.h fills them
+/// in.
 #pragma once
 
 #include "math/vec.h"

@@ -1,5 +1,5 @@
-/// Crossing of a straight cable span and a rod's axis, seen along their common normal. Part of a
-/// step, so without the standard library.
+/// Crossing of a straight cable span and a rod's axis, seen along their common normal. A step
+/// includes this header, so it does not use the standard library.
 #pragma once
 
 #include "math/scalar.h"

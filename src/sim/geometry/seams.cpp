@@ -46,8 +46,9 @@ bool PlaneCovers(const SeamPiece& plane, const Vec3& place, const Vec3& normal, 
   return !(out > 0.0) || Norm(normal - out * plane.normal) > sine;
 }
 
-/// Returns whether a box covers a normal at a point. It does, unless the normal lies between the
-/// normals of the box's faces there; all other directions are tangential or point into the box.
+/// Returns whether a box covers a normal at a point. The box covers the normal unless the normal
+/// lies between the normals of the box's faces there; all other directions are tangential or point
+/// into the box.
 bool BoxCovers(const BoxShape& box, const Vec3& place, const Vec3& normal, double same_m,
                const SeamSlack& slack) noexcept {
   if (!IsIn(box, place, same_m)) return false;

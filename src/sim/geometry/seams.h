@@ -4,7 +4,7 @@
 /// edge where a neighbor continues in the same plane, or on a side wall covered by a neighbor. The
 /// functions below reject such contacts. They inspect only the neighborhood of one point.
 ///
-/// Part of a step, so without the standard library.
+/// A step includes this header, so it does not use the standard library.
 #pragma once
 
 #include "math/vec.h"

@@ -244,7 +244,7 @@ void TouchOutside(RoundBoxPair& pair, const Stations& stations, double nearest) 
   }
   if (c.length_m == 0.0) return;
   // The distance is convex along the line. If the nearest point is not below the chord between its
-  // neighbors, these can carry all of its loads.
+  // neighbors, these neighbors can carry all loads of the point.
   const double d_before = Norm(c.Beyond(before)), d_after = Norm(c.Beyond(after));
   const double d_nearest = Norm(c.Beyond(nearest));
   const double share = after > before ? (nearest - before) / (after - before) : 0.0;

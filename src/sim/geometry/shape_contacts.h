@@ -67,7 +67,7 @@ int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, uns
 int Touch(const BoxShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
 int Touch(const HullShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
 
-/// Both are static.
+/// Two surfaces have no contacts, because both are static.
 inline int Touch(const SurfaceShape&, const SurfaceShape&, double, TouchPoint*) noexcept {
   return 0;
 }
@@ -85,7 +85,7 @@ template <class A, class B>
 double DistanceUpTo(const A& a, const B& b, double) noexcept {
   return Distance(a, b);
 }
-/// Lower bound, not exact if two corners are nearest to each other.
+/// Returns a lower bound, which is not exact if two corners are nearest to each other.
 double DistanceUpTo(const BoxShape& a, const HullShape& b, double enough_m) noexcept;
 double DistanceUpTo(const HullShape& a, const HullShape& b, double enough_m) noexcept;
 /// The result is at most the smallest gap of the points of `Touch`, and smaller than this gap by at
@@ -96,7 +96,8 @@ double DistanceUpTo(const HullShape& a, const SurfaceShape& b, double enough_m) 
 double DistanceToGround(const RoundShape& a, const SurfaceShape& b, double enough_m,
                         NearParts* kept) noexcept;
 
-/// Call the function above for shapes of any kinds, in either order, each in the frame of its body.
+/// Call the functions above for shapes of any kinds, in either order, each in the frame of its
+/// body.
 int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,
                 double margin_m, TouchPoint* out) noexcept;
 double DistanceOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,

@@ -24,8 +24,8 @@ constexpr double kSamePlane = 1.0 - 1e-9, kSamePlace = 1e-6;
 /// Maximum penetration of edges, and of corners through a sheet, in units of the smallest half
 /// thickness.
 constexpr double kDeepestEdge = 0.5, kDeepestSheet = 0.25;
-/// Planes that rise next to a corner count up to the search distance plus this factor times its
-/// depth.
+/// Planes that rise next to a corner count up to the search distance plus this factor times the
+/// depth of the corner.
 constexpr double kBesideDepths = 4.0;
 /// Search distance around a body in units of its size; fraction of it that is searched exactly;
 /// factor between further searches, which use bounds.
@@ -246,8 +246,8 @@ class ConvexSearch {
     }
   }
   /// Returns whether the edge is convex and uncovered at a point, considering the neighboring
-  /// pieces of terrain (seams.h). It is not convex if another piece continues one of its faces
-  /// straight.
+  /// pieces of terrain (seams.h). The edge is not convex if another piece continues one of its
+  /// faces straight.
   bool IsEdgeOpen(const SurfaceEdge& edge, const Vec3& at, const Vec3& normal) const noexcept {
     if (!IsOnSeam(s_.seams, at)) return true;
     if (IsEdgeCovered(s_.seams, edge.from, edge.to, {at, normal, &center_}, {limit_m_, kLevel}))
@@ -338,7 +338,7 @@ int TouchGround(const Convex& body, const SurfaceTable& s, double margin_m,
 
 double DistanceToGround(const Convex& body, double size_m, const SurfaceTable& s,
                         double enough_m) noexcept {
-  if (!(enough_m > 0.0)) return 0.0;  // the search below multiplies it
+  if (!(enough_m > 0.0)) return 0.0;  // the search below multiplies enough_m
   const double most_m = kFarthestLook * size_m;
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];

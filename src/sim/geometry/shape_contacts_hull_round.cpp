@@ -154,7 +154,8 @@ class RoundSearch {
   }
 
   /// Adds the contacts of a line that runs through the inside of the hull, one at each end of its
-  /// inner part. Both have the normal of the face with the smallest depth of the deeper end.
+  /// inner part. Both contacts have the normal of the face with the smallest depth of the deeper
+  /// end.
   void TouchInside(TouchList& list) const noexcept {
     int best = 0;
     double best_m = -1e300;

@@ -15,7 +15,7 @@ static_assert(kPlacesBetween <= kStretches);
 /// factor between further searches, which use bounds.
 constexpr double kFarthestLook = 4.0, kNearestLook = 1.0 / 64, kFurther = 4.0;
 /// Points closer than a thousandth of the radius are merged. Therefore the smallest gap may jump
-/// when the rod hardly moves. This is the bound of the jump, in radii.
+/// when the rod hardly moves. The constant is the bound of this jump, in radii.
 constexpr double kSameContact = 0.01;
 
 /// A point of a rod is redundant if a chord between its neighbors lies below it. Tolerance in
@@ -121,7 +121,7 @@ double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m)
 
 double DistanceToGround(const RoundShape& a, const SurfaceShape& surface, double enough_m,
                         NearParts* kept) noexcept {
-  if (!(enough_m > 0.0)) return 0.0;  // the search below multiplies it
+  if (!(enough_m > 0.0)) return 0.0;  // the search below multiplies enough_m
   const SurfaceShape b{&Alone(*surface.table)};
   const Vec3 from = Load(a.from), to = Load(a.to);
   const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);

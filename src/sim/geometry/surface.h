@@ -1,7 +1,8 @@
 /// Terrain surfaces: static triangles of a height field or a mesh. The time to find the triangles
 /// near a point does not grow with their number.
 ///
-/// Part of a step, so without the standard library. surface_build.h fills in the tables.
+/// A step includes this header, so it does not use the standard library. surface_build.h fills in
+/// the tables.
 #pragma once
 
 #include "math/vec.h"
@@ -11,8 +12,8 @@ namespace taut::sim {
 
 inline constexpr int kMaxTopLevels = 32;
 
-/// Marks of corner (i, j) of a field. They describe the cell between it and (i + 1, j + 1), two
-/// sides of this cell, and the corner.
+/// Marks of corner (i, j) of a field. The marks describe the cell between this corner and corner (i
+/// + 1, j + 1), two sides of this cell, and the corner.
 enum FieldMark : unsigned char {
   kRising = 1,  ///< The diagonal of the cell starts at (i, j).
   /// The edge to (i + 1, j) is sharp (convex), so the flank of a rod may touch it.
@@ -34,7 +35,7 @@ struct MeshCorner {
 
 struct SurfaceTable {
   bool is_field = false;  ///< False: a mesh.
-  bool solid = false;     ///< Has an inside; for a field, everything below it.
+  bool solid = false;     ///< Whether there is an inside; for a field, the space below.
   Vec3 low, high;         ///< Bounds of all corners, in W [m].
 
   // For a field: corner (i, j) is at low + (i, j) cells; columns along x, rows along y.

@@ -7,9 +7,9 @@
 namespace taut::sim {
 namespace {
 
-/// A shorter segment, relative to the radius, has no contact of its own.
+/// A shorter segment, relative to the radius, has no separate contact.
 constexpr double kShortStretch = 1e-6;
-/// sin^2 of the angle below which rod and edge count as parallel, without a contact of their own.
+/// sin^2 of the angle below which rod and edge count as parallel and have no separate contact.
 constexpr double kParallel = 1e-24;
 /// Sine above which a piece that rises from a point of another one counts as nearer.
 constexpr double kCovers = 1e-7;

@@ -1,6 +1,6 @@
 // Contacts of a point with a surface are local minima of its distance: points in triangles, or on
-// sharp edges and corners that are the nearest point of every adjacent triangle. So edges within a
-// plane do not disturb bodies that roll over them.
+// sharp edges and corners that are the nearest point of every adjacent triangle. Therefore edges
+// within a plane do not disturb bodies that roll over them.
 #include "sim/geometry/surface_near.h"
 
 #include "math/scalar.h"
@@ -55,7 +55,7 @@ Vec3 NearestOf(const SurfaceTriangle& t, const Vec3& p) noexcept {
     const double share = (d4 - d3) / ((d4 - d3) + (d5 - d6));
     return t.p[1] + share * (t.p[2] - t.p[1]);
   }
-  // From the plane, not from the corner: the direction is then as accurate as the normal.
+  // Computed from the plane instead of the corner, the direction is as accurate as the normal.
   const Vec3 n = Cross(ab, ac);
   return p - (Dot(n, ap) / Dot(n, n)) * n;
 }
@@ -149,7 +149,7 @@ class PlaceSearch {
       if (within >= 0.0) continue;
       if (within * within > slack2 * Dot(edge, edge)) return;
     }
-    // From the plane, not from a corner: the direction is then as accurate as the normal.
+    // Computed from the plane instead of a corner, the direction is as accurate as the normal.
     const double length = Sqrt(n2), height = at / length;
     // The solid is behind its faces.
     if (solid_ && height < -kCoincidentM) return;
@@ -198,7 +198,7 @@ class PlaceSearch {
     }
     AddAway(p, away);
   }
-  /// Adds a minimum. The first of equal ones is kept, because the direction of a face is exact.
+  /// Adds a minimum. Of equal minima, the first is kept, because the direction of a face is exact.
   void Add(const SurfacePlace& place) noexcept {
     const double same = kSamePlace * place.distance_m + kCoincidentM;
     for (int i = 0; i < kept_count_; ++i) {

@@ -1,6 +1,6 @@
 /// Searches near a height field that cache the parts found (contact_cache.h).
 ///
-/// Part of a step, so without the standard library.
+/// A step includes this header, so it does not use the standard library.
 #pragma once
 
 #include "sim/geometry/contact_cache.h"

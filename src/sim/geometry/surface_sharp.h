@@ -1,9 +1,9 @@
 /// Sharp (convex) edges and corners of a surface, which the flank of a rod may touch.
 ///
-/// They are found once, during the construction of a surface (surface_build.h). A step tests only
-/// these, each with its neighbors.
+/// The construction of a surface (surface_build.h) finds them once. A step tests only sharp edges
+/// and corners, each with its neighbors.
 ///
-/// Part of a step, so without the standard library.
+/// A step includes this header, so it does not use the standard library.
 #pragma once
 
 #include "sim/geometry/line_stretch.h"
@@ -19,7 +19,7 @@ struct SurfaceEdge {
   Vec3 from, to;
   Vec3 apex[kMaxSides];
   int sides;
-  bool border;  ///< Whether it is at the border of a field.
+  bool border;  ///< Whether the edge is at the border of a field.
 };
 
 /// Part of a straight line, and the search distance around it.
@@ -213,7 +213,8 @@ void EachSharpOfBounds(const SurfaceTable& s, const Vec3& low, const Vec3& high,
   });
 }
 
-/// Visits them for each segment of the line. Segments share edges and corners that are near both.
+/// Visits the sharp edges and corners of a mesh for each segment of the line. Segments share edges
+/// and corners that are near both.
 template <class UseEdge, class UseCorner>
 void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
                      const UseCorner& use_corner) noexcept {

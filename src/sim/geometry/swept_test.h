@@ -1,6 +1,6 @@
 /// Continuous collision detection: tests whether two shapes with a gap that is predicted to close
-/// within the step really meet. The prediction uses the present gap and normal. At high speed, it
-/// would deflect shapes that pass by each other.
+/// within the step really meet. The prediction uses the present gap and normal. At high speed, this
+/// prediction alone would deflect shapes that pass by each other.
 #pragma once
 
 #include <stdint.h>
@@ -25,8 +25,8 @@ uint32_t ClosingPoints(const MovingShape& a, const MovingShape& b, double step_s
                        const TouchPoint* points, int count) noexcept;
 
 /// Follows the shapes through the step (conservative advancement). Removes the points of `closing`
-/// that do not close. The others get the normal at the time of contact and the corresponding gap.
-/// Returns the number of remaining points.
+/// that do not close. The remaining points get the normal at the time of contact and the
+/// corresponding gap. Returns the number of remaining points.
 int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint32_t closing,
                 TouchPoint* points, int count) noexcept;
 
