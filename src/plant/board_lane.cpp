@@ -24,7 +24,7 @@ void Serialize(LaneState& state, board::Watch& watch) {
                watch.width_width, watch.width_step, watch.step_step, watch.felt);
 }
 
-/// Serializes the changing part of a board that only broadcasts reach.
+/// Serializes the data of a board that can change if the board receives only broadcasts.
 void Serialize(LaneState& state, board::Board& board) {
   for (std::uint8_t m = 0; m < board::kMotors; ++m) {
     Serialize(state, board.loops[m]);
@@ -49,7 +49,7 @@ BoardLane::BoardLane(int motors)
       boards_(parameters_.size()),
       readings_(static_cast<std::size_t>(motors)) {
   for (board::Parameters& parameters : parameters_) board::SetDefaults(parameters);
-  // A connector without a motor must not stall.
+  // A connector without a motor must not report a stall.
   if (motors % board::kMotors != 0) parameters_.back().motor[1][board::kDutyLimit] = 0.0f;
 }
 

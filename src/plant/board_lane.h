@@ -55,7 +55,8 @@ class BoardLane {
     return readings_[static_cast<std::size_t>(motor)];
   }
 
-  /// Returns a text about the first fault; empty without. `names`: of the motors' cables.
+  /// Returns a text about the first fault; empty if there is none. `names`: names of the motors'
+  /// cables.
   std::string Faults(const std::vector<std::string>& names) const;
 
   void Serialize(LaneState& state);

@@ -40,9 +40,9 @@ class BodyForces {
   const std::vector<BodyForce>& Gather(const Observation& exact, const World& world, int lane = 0);
 
  private:
-  std::vector<std::vector<BodyPoint>>
-      cables_;  ///< Points of each cable. Empty if its path must be read from the world (wheels,
-                ///< friction, wrapping).
+  /// Points of each cable; empty for cables whose path is read from the world (wheels, friction,
+  /// wrapping).
+  std::vector<std::vector<BodyPoint>> cables_;
   std::vector<int> bodies_of_nodes_;
   std::vector<JointDef> joints_;  ///< Result of `JointsByArms`.
   std::size_t body_count_;

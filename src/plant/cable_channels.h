@@ -15,8 +15,8 @@ struct CableChannel {
   // Row with the values: cable c of lane j is at [c * lanes + j]. One of the two pointers is null.
   const double* ReadingRows::*reading;
   double* Commands::*command;
-  bool sensed = false;  ///< Whether sensors also measure it (channel `sensor/NAME/...`).
-  /// Whether it is recorded only for cables with a tension set point.
+  bool sensed = false;  ///< Whether sensors also measure the quantity (`sensor/NAME/...`).
+  /// Whether the channel is recorded only for cables with a tension set point.
   bool with_set_point = false;
 
   const double* Row(const ReadingRows& readings, const Commands& commands) const noexcept {

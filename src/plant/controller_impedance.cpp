@@ -20,7 +20,8 @@ control::ImpedanceLaw LawOf(const ImpedanceSpec& spec, const ClockSpec& clock) {
   return law;
 }
 
-/// Impedance control of the cables of a controller (paper eq. 3). Gains may differ between worlds.
+/// Impedance control of the cables of a controller (Mirletz et al. 2015, eq. 3). Gains may differ
+/// between worlds.
 class ImpedanceController final : public Controller {
  public:
   ImpedanceController(const ControlSetup& setup, std::size_t index)

@@ -71,8 +71,8 @@ class PositionController final : public Controller {
 
  private:
   struct Lane {
-    std::vector<std::vector<control::ProgramPoint<double>>> programs;  ///< Programs of the first
-                                                                       ///< cables in `cables_`.
+    /// Programs of the first cables in `cables_`.
+    std::vector<std::vector<control::ProgramPoint<double>>> programs;
     std::vector<double> start_m;  ///< Rest lengths of all other cables at their first tick.
     std::vector<double> held_m;   ///< Set by `Hold`; overrides the program.
     std::vector<std::uint8_t> is_held;
@@ -97,9 +97,9 @@ class PositionController final : public Controller {
 
   std::size_t index_;
   ClockSpec clock_;
-  std::vector<int> cables_;  ///< First the cables with a program, then cables that only a gait
-                             ///< drives.
-  bool moved_ = false;       ///< Whether a gait drives the cables.
+  /// First the cables with a program, then cables that only a gait drives.
+  std::vector<int> cables_;
+  bool moved_ = false;  ///< Whether a gait drives the cables.
   std::vector<Lane> lanes_;
 };
 

@@ -118,8 +118,9 @@ std::vector<Vec3> PointsOf(const ModelDef& def) {
   return points;
 }
 
-/// Returns the horizontal displacement by start noise, plus a vertical one so that no point comes
-/// closer to the ground. Returns nothing and reports an error if a point would leave the terrain.
+/// Returns the horizontal displacement by start noise, plus a vertical displacement so that no
+/// point comes closer to the ground. Returns nothing and reports an error if a point would leave
+/// the terrain.
 std::optional<Vec3> PlacedBy(const ExperimentSpec& experiment, const Model& model,
                              Diagnostics& out) {
   Vec3 by = PlaceOf(experiment.start_noise, experiment.seed);

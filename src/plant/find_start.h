@@ -40,7 +40,8 @@ struct Unsettled {
 };
 /// Records the current state. Does not change the world.
 Unsettled NoteUnsettled(WorldBatch& batch, double step_s);
-/// Compares with the settled state. The last step of `batch` must be a step of `Settle`.
+/// Compares the state before settling with the settled state. The last step of `batch` must be a
+/// step of `Settle`.
 StartChange ChangeOf(const Unsettled& before, const WorldBatch& batch);
 
 /// Reports overlaps in the current state of the only world, like `CheckStart`. `terrain`: whether

@@ -16,9 +16,8 @@ struct ImpedanceRows {
   const double *tension_offset_n = nullptr, *length_offset_m = nullptr,
                *position_gain_n_per_m = nullptr, *velocity_gain_n_s_per_m = nullptr,
                *velocity_offset_m_per_s = nullptr;
-  double *error_before = nullptr, *integral = nullptr, *length_before_m = nullptr;  ///< State
-                                                                                    ///< between
-                                                                                    ///< ticks.
+  /// State between ticks.
+  double *error_before = nullptr, *integral = nullptr, *length_before_m = nullptr;
 };
 
 /// Commands that a tick of impedance control reads and writes, per cable.
@@ -32,8 +31,8 @@ struct MeasureRows {
   double* rest_before_m = nullptr;  ///< Per cable: rest length after the previous step (updated).
   double* wound_j = nullptr;        ///< Work of winding in (accumulated).
   double* max_tension_n = nullptr;  ///< Largest tension of any cable.
-  double* error_n2_s = nullptr;     ///< Time integral of the mean squared tension error
-                                    ///< (accumulated).
+  /// Time integral of the mean squared tension error (accumulated).
+  double* error_n2_s = nullptr;
 };
 
 /// Parameters of sine waves, one wave per output.
@@ -48,9 +47,9 @@ struct SineRows {
 struct CpgRows {
   int count = 0, coupling_count = 0;
   const double *frequency_hz = nullptr, *amplitude_m_per_s = nullptr,
-               *convergence_per_s = nullptr;                     ///< Per oscillator.
-  const unsigned short *to = nullptr, *from = nullptr;           ///< Per coupling; the same in all
-                                                                 ///< lanes.
+               *convergence_per_s = nullptr;  ///< Per oscillator.
+  /// Per coupling; the same in all lanes.
+  const unsigned short *to = nullptr, *from = nullptr;
   const double *weight_per_m = nullptr, *phase_turns = nullptr;  ///< Per coupling.
 };
 
@@ -69,9 +68,9 @@ struct FeedbackCpgRows {
   const double *frequency_hz = nullptr, *phase_at_start_turns = nullptr, *amplitude = nullptr,
                *convergence_per_s = nullptr, *frequency_gain_hz_per_s = nullptr,
                *amplitude_gain = nullptr,
-               *phase_gain_turns_per_s = nullptr;                   ///< Per oscillator.
-  const unsigned short *to = nullptr, *from = nullptr;              ///< Per coupling; the same in
-                                                                    ///< all lanes.
+               *phase_gain_turns_per_s = nullptr;  ///< Per oscillator.
+  /// Per coupling; the same in all lanes.
+  const unsigned short *to = nullptr, *from = nullptr;
   const double *weight_per_m = nullptr, *coupling_turns = nullptr;  ///< Per coupling.
 };
 
@@ -81,8 +80,8 @@ struct BodyRows {
   /// Rows per body: 3, 4 (rotation of the principal frame to W), 3, 3 (angular momentum in W), 3.
   const double *position_m = nullptr, *turn = nullptr, *velocity_m_per_s = nullptr, *spin = nullptr,
                *inverse_inertia = nullptr;
-  const double* start_turn = nullptr;  ///< Described value of `turn`: four numbers per body, the
-                                       ///< same in all lanes.
+  /// Described value of `turn`: four numbers per body, the same in all lanes.
+  const double* start_turn = nullptr;
 };
 
 struct LaneKernel {

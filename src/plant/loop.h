@@ -78,7 +78,7 @@ class Loop {
     return timelines_[static_cast<std::size_t>(lane)];
   }
 
-  /// Returns a text about faults that controllers of a lane have detected; empty without.
+  /// Returns a text about faults that controllers of a lane have detected; empty if there are none.
   std::string Faults(int lane = 0) const;
 
   // --- interactive changes -----------------------------------------------------------------------
@@ -93,7 +93,7 @@ class Loop {
                std::span<const FiniteCheck::Named> numbers) {
     return check_.Accepts(lane, time_s(lane), kind, name, numbers);
   }
-  /// Commands a rest length. It holds until a controller that drives the cable changes it.
+  /// Commands a rest length. The command holds until a controller that drives the cable changes it.
   void SetRestLength(int lane, int cable, double rest_length_m);
   /// Sets forces by a user's hand or a program, in addition to the events of the experiment.
   void SetHandForces(int lane, std::vector<ExternalForce> forces);
@@ -110,8 +110,8 @@ class Loop {
   struct Law {
     std::unique_ptr<Controller> controller;
     LaneClock clock;
-    std::string custom;  ///< Subject and verb of messages, such as "custom controller 0 sets".
-                         ///< Empty: not custom.
+    /// Subject and verb of messages, such as "custom controller 0 sets". Empty: not custom.
+    std::string custom;
   };
 
   const std::string& CableName(int cable) const noexcept {
@@ -142,8 +142,8 @@ class Loop {
   std::vector<double> step_s_, to_s_;
   FiniteCheck check_;
   bool watches_commands_ = false;
-  bool watches_readings_;  ///< Whether to check readings, because the plant is not a simulation of
-                           ///< taut.
+  /// Whether to check readings, because the plant is not a simulation of taut.
+  bool watches_readings_;
 };
 
 }  // namespace taut::plant

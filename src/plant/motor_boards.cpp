@@ -77,7 +77,7 @@ class Boards {
     // The first broadcast, at the start, changes the mode.
     const bool broadcast = tick % of.every == of.delay || tick == 0;
     if (broadcast) {
-      // Like the driver of a robot, which holds all motors after a fault.
+      // After a fault, the boards hold all motors, as the driver of a robot does.
       const bool holds = time_s < of.spec.hold_s - 1e-9 || of.boards.HasFault();
       of.boards.Broadcast(holds ? board::Mode::kHold : mode_, of.spec.capture, of.values);
     }

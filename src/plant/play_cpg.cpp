@@ -4,8 +4,8 @@
 namespace taut::plant {
 namespace {
 
-/// Central pattern generator: phase oscillators with amplitude dynamics (paper eq. 4-6,
-/// docs/theory/gaits.md).
+/// Central pattern generator: phase oscillators with amplitude dynamics (Mirletz et al. 2015, eq.
+/// 4-6; docs/theory/gaits.md).
 class CpgPlayer final : public OscillatorPlayer {
  public:
   explicit CpgPlayer(const GaitSetup& setup)

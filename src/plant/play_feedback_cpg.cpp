@@ -5,8 +5,8 @@
 namespace taut::plant {
 namespace {
 
-constexpr std::size_t kSaid = 3;  ///< Number of feedback values per oscillator: frequency,
-                                  ///< amplitude, phase.
+/// Number of feedback values per oscillator: frequency, amplitude, phase.
+constexpr std::size_t kSaid = 3;
 static_assert(NetworkSpec::kMostHidden == kMostHidden);
 constexpr const char* kSaidNames[kSaid] = {"frequency", "amplitude", "phase"};
 

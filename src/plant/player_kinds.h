@@ -14,7 +14,8 @@
 
 namespace taut::plant {
 
-/// Gaits of all lanes. They differ only in numbers, so `ResolveGait` returns the same for all.
+/// Gaits of all lanes. The gaits differ only in numbers, so `ResolveGait` returns the same result
+/// for all lanes.
 struct GaitSetup {
   std::vector<const GaitSpec*> gaits;
   ResolvedGait resolved;

@@ -47,9 +47,9 @@ class Sensors final : public SensorModel {
   struct Errors {
     double bias_n = 0, gain = 1, drift_n_per_s = 0;
     double zero_m = 0, encoder_gain = 1;
-    double start_m = 0;         ///< Rest length at the first sample.
-    bool index_passed = false;  ///< Whether an index mark was passed, so that `zero_m` is a
-                                ///< multiple of `index_m`.
+    double start_m = 0;  ///< Rest length at the first sample.
+    /// Whether an index mark was passed, so that `zero_m` is a multiple of `index_m`.
+    bool index_passed = false;
   };
 
   void DrawErrors(std::size_t lane);

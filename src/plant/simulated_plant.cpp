@@ -133,8 +133,8 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     });
   }
 
-  /// Switches motors if commands have changed, and applies duties. Keeps switching by other
-  /// callers.
+  /// Switches motors if commands have changed, and applies duties. Motors that other callers have
+  /// switched stay switched.
   void Switch() {
     for (const int c : motors_) {
       for (std::size_t j = 0; j < goes_.size(); ++j) {
@@ -189,8 +189,8 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
   Commands commands_;
   Observation seen_;
   std::vector<int> motors_;      ///< Cables with DC motors.
-  std::vector<Power> powers_;    ///< Row.
-  std::vector<double> shaft_m_;  ///< Row; empty if no gear has backlash.
+  std::vector<Power> powers_;    ///< Row of motor drives.
+  std::vector<double> shaft_m_;  ///< See `Observation::shaft_m`; empty if no gear has backlash.
 };
 
 }  // namespace

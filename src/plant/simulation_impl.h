@@ -25,8 +25,8 @@ using Bytes = std::vector<std::uint8_t>;
 struct Variant {
   RolloutWorld world;
   std::shared_ptr<const Bytes> start;
-  std::uint64_t hash = 0;  ///< Hash of the resolved experiment and `world.numbers`; 0: not computed
-                           ///< yet.
+  /// Hash of the resolved experiment and `world.numbers`; 0: not computed yet.
+  std::uint64_t hash = 0;
 };
 
 struct WorldSlot {

@@ -76,8 +76,8 @@ class RowOfTrace {
     }
   }
 
-  /// Warns if recorded cable lengths differ from those in this pose. Then the trace belongs to
-  /// another robot, or to one with another described pose.
+  /// Warns if recorded cable lengths differ from those in this pose. In this case, the trace
+  /// belongs to another robot, or to a robot with another described pose.
   void CompareLengths(const ModelDef& there) const {
     for (const CableDef& cable : there.cables) {
       if (cable.touches != CableTouches::kNone) continue;  // wrapping cables bend at contacts
