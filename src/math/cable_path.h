@@ -6,8 +6,8 @@
 /// its rate, and the pull on each point per unit of tension.
 ///
 /// A point is an attachment, or one of the two points at which a cable reaches and leaves a wheel
-/// (cable_wheel.h). The arc between these two adds to the length but exerts no pull. It does not
-/// affect the rate, because both points slide in the directions of their spans
+/// (cable_wheel.h). The arc between these two adds to the length but exerts no pull. The arc does
+/// not affect the rate, because both points slide in the directions of their spans
 /// (docs/theory/cables.md, eq. 14).
 #pragma once
 
@@ -50,7 +50,7 @@ TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points) noexcept 
   return path;
 }
 
-/// Returns the same for points at `place(i)` without storing directions.
+/// Returns length and rate of a path through points at `place(i)`, without storing directions.
 template <class V, class Place>
 PathLength<V> MeasureThrough(int count, const Place& place) noexcept {
   PathLength<V> path;

@@ -15,7 +15,7 @@ struct Wheel {
   V center, axis;  ///< In the frame of the path; the axis is a unit vector.
   S radius;        ///< [m]
   S before;        ///< `angle` in the previous step; it changes by at most half a turn.
-  /// Index of the path point where the cable reaches the wheel; it leaves at the next one.
+  /// Index of the path point where the cable reaches the wheel; it leaves at the next point.
   int at;
   // Results:
   S angle;  ///< Angle about the axis from the previous to the next point, with all turns [rad].
@@ -39,7 +39,7 @@ struct Tangents {
   S zp, zq, lp, around, lq;
 };
 
-/// Stands for an arc that is free along the axis, without friction.
+/// Value for an arc that is free along the axis, without friction.
 inline constexpr double kNotHeld = 1e300;
 
 /// Slopes of a cable along the axis of a wheel, per length across it. Where friction holds the
@@ -208,8 +208,8 @@ void BeginOnWheels(PathPoint<V>* points, int count, Wheel<V>* wheels, const S* h
 }
 
 /// Returns the middle of the arc on a wheel as an angle about its axis [rad], measured from `mark`,
-/// a direction normal to the axis. It separates the material of the spans before and after the
-/// wheel. Without contact, it is the point of the line nearest to the axis.
+/// a direction normal to the axis. The middle separates the material of the spans before and after
+/// the wheel. Without contact, the middle is the point of the line nearest to the axis.
 template <class V>
 TAUT_INLINE typename Wheel<V>::S MiddleOf(const Wheel<V>& wheel, const V& mark,
                                           const PathPoint<V>* points) noexcept {

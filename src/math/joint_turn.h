@@ -5,7 +5,7 @@
 
 namespace taut::math {
 
-/// Largest initial error of constrained rotations [rad]; the first step closes it.
+/// Largest initial error of constrained rotations [rad]; the first step removes this error.
 inline constexpr double kClosedTurn_rad = 1e-6;
 
 /// Returns the rotation of `joint.turned` about the constrained axes [rad, if small]; 0 if the

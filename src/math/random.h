@@ -1,6 +1,7 @@
 /// Counter-based random numbers: functions of seed, stream and index. There is no sequential state,
-/// so the order of evaluation, the number of threads and interruptions have no effect. The same
-/// bits on every machine: only integers, + - * /, sqrt, and taut's logarithm.
+/// so the order of evaluation, the number of threads and interruptions have no effect. The numbers
+/// have the same bits on every machine, because only integers, + - * /, sqrt and taut's logarithm
+/// are used.
 #pragma once
 
 #include <array>
