@@ -1,7 +1,8 @@
 /// Assertions of internal invariants. If the condition is false, TAUT_ASSERT(condition) prints it
 /// with its file and line and ends the program. Only builds with the CMake option TAUT_ASSERTS
-/// (CONTRIBUTING.md) check it; others have no cost. No input and no state of a world may make an
-/// assertion fail. No standard library, because the step includes this header.
+/// (CONTRIBUTING.md) check the condition; other builds have no cost. No input and no state of a
+/// world may make an assertion fail. This header does not use the standard library, because a step
+/// includes it.
 #pragma once
 
 #ifdef TAUT_ASSERTS

@@ -13,9 +13,9 @@ namespace taut::base {
 /// files, since reading from a pipe or device could block or never end.
 enum class NamedBy { kUser, kFile };
 
-/// Returns all bytes of a file. Returns nothing and adds a diagnostic if it is a directory, cannot
-/// be read, is not a regular file (NamedBy::kFile), or is larger than `most_bytes`. It reads no
-/// more than this. `hint`: hint of the size diagnostic.
+/// Returns all bytes of a file. Returns nothing and adds a diagnostic if the file is a directory,
+/// cannot be read, is not a regular file (NamedBy::kFile), or is larger than `most_bytes`. It reads
+/// at most `most_bytes`. `hint`: hint of the size diagnostic.
 std::optional<std::string> ReadInputFile(const std::string& path, std::size_t most_bytes,
                                          const std::string& hint, Diagnostics& out,
                                          NamedBy named_by = NamedBy::kFile);

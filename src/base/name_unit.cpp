@@ -28,7 +28,7 @@ std::string UnitOfWord(std::string_view word) {
 }
 
 /// Returns whether the last letter of a name is an index or component (body_a, orientation_w)
-/// instead of a unit. It is a unit only after the name of its quantity.
+/// instead of a unit. Such a letter is a unit only after the name of its quantity.
 bool IsOnlyLetter(std::string_view word, std::string_view before) {
   constexpr std::string_view kLetters[] = {"a", "v", "w", "k", "c"};
   constexpr std::string_view kQuantities[] = {"current", "voltage", "power", "temperature"};

@@ -17,7 +17,7 @@ struct NameUnit {
 };
 
 /// Returns the unit of a name. The first word names the quantity; the unit consists of all unit
-/// words at the end. So kg_per_m is a mass per length, although it ends with m.
+/// words at the end. Therefore kg_per_m is a mass per length, although it ends with m.
 NameUnit UnitAtEnd(std::string_view name);
 
 }  // namespace taut::base

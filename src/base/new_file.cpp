@@ -90,7 +90,7 @@ bool NewFile::WriteAllOrNone(std::string_view bytes) {
   struct stat before {};
   if (fstat(descriptor_, &before) != 0) return Fail();
   if (Write(bytes)) return true;
-  // Truncate to the previous size and continue there. Impossible for devices and pipes.
+  // Truncate to the previous size and continue there. This is impossible for devices and pipes.
   if (ftruncate(descriptor_, before.st_size) == 0) lseek(descriptor_, before.st_size, SEEK_SET);
   return false;
 }

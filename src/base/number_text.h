@@ -1,7 +1,7 @@
-/// Conversion between numbers and text like std::from_chars and std::to_chars. Also for standard
-/// libraries that support integers only (libc++ of emscripten 3.1.6). number_text.cpp forwards to
-/// the library; number_text_by_hand.cpp replaces it. Their results are identical in every bit and
-/// character.
+/// Conversion between numbers and text like std::from_chars and std::to_chars. These functions also
+/// work with standard libraries that support integers only (libc++ of emscripten 3.1.6).
+/// number_text.cpp forwards to the library; number_text_by_hand.cpp replaces the library. The
+/// results of both files are identical in every bit and character.
 #pragma once
 
 #include <charconv>
