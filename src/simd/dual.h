@@ -58,12 +58,12 @@ TAUT_INLINE bool Any(DualMask m) noexcept { return m.v; }
 TAUT_INLINE Dual Max(Dual a, Dual b) noexcept { return a.v > b.v ? a : b; }
 TAUT_INLINE Dual Min(Dual a, Dual b) noexcept { return a.v < b.v ? a : b; }
 TAUT_INLINE Dual Abs(Dual a) noexcept { return Max(a, -a); }
-/// At 0, the derivative does not exist and is set to 0. Such roots are not selected.
+/// At 0, the derivative does not exist and is set to 0. Roots of 0 are not selected.
 TAUT_INLINE Dual Sqrt(Dual a) noexcept {
   const double root = __builtin_sqrt(a.v);
   return {root, a.v > 0.0 ? DualPart(a.d, 0.5 / root) : 0.0};
 }
-/// Constant between its jumps, so the derivative is 0.
+/// The function is constant between its jumps, so the derivative is 0.
 TAUT_INLINE Dual Round(Dual a) noexcept { return {taut::Round(a.v), 0.0}; }
 TAUT_INLINE Dual& operator+=(Dual& a, Dual b) noexcept { return a = a + b; }
 TAUT_INLINE Dual& operator-=(Dual& a, Dual b) noexcept { return a = a - b; }

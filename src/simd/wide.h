@@ -166,8 +166,9 @@ TAUT_INLINE bool Any(Mask<1, I> m) noexcept {
   return m.v;
 }
 
-/// One lane of W, for code in which lanes have too little in common to run together. Tagged with W,
-/// so that each instruction set has its own type. If W has one lane, it is W itself.
+/// One lane of W, for code in which lanes have too little in common to run together. The type is
+/// tagged with W, so that each instruction set has a separate type. If W has one lane, it is W
+/// itself.
 template <class W>
 struct LaneOf {
   using Type = Wide<1, W>;
