@@ -107,7 +107,7 @@ struct Tangent {
   Matrix mass;       ///< Mass matrix [kg, kg m, kg m^2].
   /// Constraints of joints and loaded planes, one orthonormal row each: held * motion = 0.
   Matrix held;
-  /// Basis of the motions that forces can resist, one orthonormal column each. It excludes
+  /// Basis of the motions that forces can resist, one orthonormal column each. The basis excludes
   /// rotations of bodies whose forces all act at the center of mass, and rotations of rods about
   /// their axis.
   Matrix effective;
@@ -155,8 +155,8 @@ struct Modes {
 /// described pose should be an equilibrium: apply `ModelAt` to the pose from `FindEquilibrium`.
 Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads = {});
 
-/// Member, with a column in the equilibrium matrix: a cable (or one span between points with
-/// friction), a bar, one constraint direction of a joint, or a contact point on a plane.
+/// Member, with a column in the equilibrium matrix. A member is a cable (or a span between points
+/// with friction), a bar, one constraint direction of a joint, or a contact point on a plane.
 struct StaticMember {
   enum class Kind { kCable, kBar, kHeld, kContact };
   Kind kind = Kind::kCable;
@@ -226,10 +226,10 @@ struct ForceAnalysis {
 ForceAnalysis AnalyseForces(const ModelDef& def, bool contact = true);
 
 /// Returns the least stiffness [N/m] about an equilibrium (`ModelAt` of the pose from
-/// `FindEquilibrium`): the minimum over u of u^T K u / (sum of the squared displacements of all
-/// points at which members, joints or loads act). u ranges over all free motions except unresisted
-/// rigid motions (docs/theory/statics.md, eq. 16). Negative: the equilibrium is unstable. Returns
-/// nothing if no such motion exists.
+/// `FindEquilibrium`). It is the minimum of u^T K u / (sum of the squared displacements of all
+/// points at which members, joints or loads act). The motion u ranges over all free motions except
+/// unresisted rigid motions (docs/theory/statics.md, eq. 16). Negative: the equilibrium is
+/// unstable. Returns nothing if no such motion exists.
 std::optional<double> LeastStiffness(const ModelDef& def, const LoadCaseSpec& loads = {});
 
 }  // namespace taut

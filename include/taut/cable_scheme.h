@@ -10,9 +10,9 @@ namespace taut {
 enum class CableScheme {
   kExplicit,  ///< Soft cable: explicit force.
   /// Stiff cable: implicit tension along fixed directions, taken at the middle of the step. Used
-  /// for cables with wheels, edges, friction or a DC motor, and for cables in a group with a
-  /// kinematic body or with a joint that slides or has limits, friction or springs. Eq. 12 limits
-  /// the tension (`kStatusStepTooLong`).
+  /// for cables with wheels, edges, friction or a DC motor. Also used in groups with a kinematic
+  /// body, or with a joint that slides or has limits, friction or springs. Eq. 12 limits the
+  /// tension (`kStatusStepTooLong`).
   kAlong,
   /// Stiff cable, implicit in tension and direction. Valid for any stiffness and tension; conserves
   /// energy.
@@ -38,9 +38,9 @@ constexpr const char* CableSchemeName(CableScheme scheme) noexcept {
 }
 
 /// Returns the number of equal substeps of each step of `step_s` > 0, from 1 to 100. The number
-/// depends only on the step and the model. It exceeds 1 only if stiff cables can touch edges or
-/// rods, or have less than 5 % of critical damping in a group with the scheme `kAlong`. If 100
-/// substeps are too few, the world has the status `kStatusStepTooLong`.
+/// depends only on the step and the model. The number exceeds 1 only if stiff cables can touch
+/// edges or rods, or have less than 5 % of critical damping in a group with the scheme `kAlong`. If
+/// 100 substeps are too few, the world has the status `kStatusStepTooLong`.
 int SubstepCount(const Model& model, double step_s);
 
 /// Returns the scheme of each cable at steps of `step_s` > 0. The schemes depend on the step and on

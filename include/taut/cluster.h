@@ -40,8 +40,8 @@ class Cluster {
   virtual void Serve(Evaluator& local) = 0;
 
   /// Function that processes independent pieces of work; pieces and results are texts with
-  /// arbitrary bytes. It returns one result per piece, in order, or fewer results if it was
-  /// stopped.
+  /// arbitrary bytes. The function returns one result per piece, in order, or fewer results if it
+  /// was stopped.
   using Work = std::function<std::vector<std::string>(std::span<const std::string> pieces)>;
   /// Rank 0: returns a function that distributes pieces over all ranks in equal, contiguous shares.
   /// `local` processes the share of rank 0; `stop` is as above. `Serve` returns on the other ranks

@@ -154,9 +154,9 @@ Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options
 std::vector<std::string> ComparisonLines(const Comparison& comparison, const std::string& name_a,
                                          const std::string& name_b);
 
-/// Returns a verdict on a simulation (a) compared with a measurement (b), at most five lines: the
-/// compared channels, the errors of the worst group of channels, and, if there are such patterns, a
-/// common bias and a common lag with their likely causes. Empty without compared channels.
+/// Returns a verdict on a simulation (a) compared with a measurement (b), at most five lines.
+/// Contents: the compared channels; the errors of the worst group of channels; a common bias and a
+/// common lag with their likely causes, if there are any. Empty without compared channels.
 std::vector<std::string> MeasuredVerdict(const Comparison& comparison, const std::string& name_a,
                                          const std::string& name_b);
 

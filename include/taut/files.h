@@ -1,7 +1,7 @@
 /// Atomic file replacement, and folder locks between processes.
 ///
 /// Threads: any number may call these functions concurrently. If two processes write the same file,
-/// it contains the complete text of one of them.
+/// the file contains the complete text of one of them.
 #pragma once
 
 #include <cstdint>
@@ -59,7 +59,7 @@ class NewFile {
   bool published_ = false, left_ = false;
 };
 
-/// Identity of the file at a path. It changes if another file replaces that file.
+/// Identity of the file at a path. The identity changes if another file replaces that file.
 struct FileIdentity {
   std::uint64_t device = 0, file = 0;  ///< 0, 0: no file.
   bool operator==(const FileIdentity&) const = default;

@@ -33,9 +33,9 @@ struct FitParameter {
   double prior_sd = std::numeric_limits<double>::infinity();
   std::optional<double> prior_mean;  ///< Absent: the start value.
   /// Relevant change of the parameter, the unit of directions and steps. Without a prior, an
-  /// estimate needs a standard error below half the scale. 0: the sd of the prior; without a prior
-  /// a quarter of the distance between the bounds; without bounds a tenth of the start value, or 1
-  /// if that is 0.
+  /// estimate needs a standard error below half the scale. 0 selects a default: the sd of the
+  /// prior; without a prior, a quarter of the distance between the bounds; without bounds, a tenth
+  /// of the start value, or 1 if the start value is 0.
   double scale = 0;
   double step = 0.1;  ///< Step of finite differences, in units of the scale, > 0.
   /// The data need not determine the parameter, for example a sensor offset or a delay.

@@ -21,11 +21,11 @@ namespace taut {
 
 struct RobotSpec;
 
-/// Selector of cables, as in an experiment. It matches a cable that has all tags of at least one of
-/// these sets. The name of a cable is one of its tags.
+/// Selector of cables, as in an experiment. The selector matches a cable that has all tags of at
+/// least one of these sets. The name of a cable is one of its tags.
 using CableMatch = std::vector<std::vector<std::string>>;
 
-/// Driven quantity. It determines the unit of amplitudes, offsets and tables.
+/// Driven quantity. This quantity determines the unit of amplitudes, offsets and tables.
 enum class GaitDrives {
   kVelocity,    ///< V0 of impedance control [m/s].
   kRestLength,  ///< Change of rest lengths [m].
@@ -243,8 +243,9 @@ struct CouplingGraph {
 };
 
 /// Computes the coupling graph. There is one oscillator per cable of `order` (empty: per cable with
-/// an actuator). It is coupled to every oscillator whose cable has an attachment on a common body
-/// (docs/theory/gaits.md, eq. G.8). On an error, returns nothing and adds diagnostics at `at`.
+/// an actuator). Each oscillator is coupled to every oscillator whose cable has an attachment on a
+/// common body (docs/theory/gaits.md, eq. G.8). On an error, returns nothing and adds diagnostics
+/// at `at`.
 std::optional<CouplingGraph> FindCouplings(const RobotSpec& robot, CpgSymmetry symmetry,
                                            const std::vector<std::string>& order,
                                            const SourceRef& at, Diagnostics& out);

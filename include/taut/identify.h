@@ -23,7 +23,7 @@
 
 namespace taut {
 
-/// Compared value. Its residual is (computed - measured) / sd.
+/// Compared value. The residual of the point is (computed - measured) / sd.
 struct FitPoint {
   std::size_t experiment = 0;  ///< Index of the experiment in the fit.
   std::string channel, unit;
@@ -42,8 +42,8 @@ struct IdentifyOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// Function that processes independent pieces of a fit, like `Cluster::Work`. It returns one result
-/// per piece, in order, or fewer results if it was stopped.
+/// Function that processes independent pieces of a fit, like `Cluster::Work`. The function returns
+/// one result per piece, in order, or fewer results if it was stopped.
 using FitWork = std::function<std::vector<std::string>(std::span<const std::string> pieces)>;
 
 struct IdentifyCounts {
@@ -189,9 +189,9 @@ std::vector<ExperimentErrors> ErrorsByExperiment(const FitSpec& spec,
                                                  const std::vector<FitPoint>& points,
                                                  const BeforeAfter& residuals);
 
-/// Returns the text of an experiment file with these values of the problem's parameters. It extends
-/// experiment `experiment` of the fit by `base:`, `parameters:` and `set:`. `folder`: folder of the
-/// new file.
+/// Returns the text of an experiment file with these values of the problem's parameters. The new
+/// file extends experiment `experiment` of the fit by `base:`, `parameters:` and `set:`. `folder`:
+/// folder of the new file.
 std::string FittedExperimentYaml(const Identification& fit, std::size_t experiment,
                                  const std::vector<double>& values, const std::string& folder);
 

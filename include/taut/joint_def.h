@@ -43,8 +43,8 @@ struct JointDef {
   int body_a = kWorld, body_b = 0;  ///< a: body or world; b: body. At most one of the two is fixed.
   Vec3 from_m, to_m;                ///< Points of a and b, in W.
   Vec3 axis{0.0, 0.0, 1.0};         ///< Unit vector in W.
-  /// Rotation of b's axes relative to a's axes in the described pose, in W. It differs from the
-  /// identity only if the axes do not coincide there.
+  /// Rotation of b's axes relative to a's axes in the described pose, in W. The rotation differs
+  /// from the identity only if the axes do not coincide there.
   Quat turned;
   bool collides = false;  ///< Whether the two bodies can collide.
 
@@ -70,8 +70,8 @@ inline bool HoldsLength(const JointDef& j) noexcept {
   return !j.least && !j.most && j.stiffness == 0.0;
 }
 
-/// Relative motions that a kind of joint constrains. None of them applies to a distance joint,
-/// which has no axis.
+/// Relative motions that a kind of joint constrains. No such constraint applies to a distance
+/// joint, which has no axis.
 struct HeldMotions {
   bool along = false;   ///< Sliding along the axis.
   bool across = false;  ///< Sliding in every direction normal to the axis.

@@ -60,7 +60,7 @@ class LiveRun {
   virtual std::vector<ExternalForce> ExternalForces() const = 0;
 
   // --- interaction -------------------------------------------------------------------------------
-  /// Sets the interactive drag, or releases it if `hand` is empty. Its stiffness is
+  /// Sets the interactive drag, or releases it if `hand` is empty. The stiffness of the drag is
   /// `DragStiffness()`.
   virtual void SetHand(const std::optional<HandSpec>& hand) = 0;
   /// Returns the stiffness of the interactive drag [N/m]: 200 N/m per kilogram of the model, enough

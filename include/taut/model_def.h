@@ -200,7 +200,8 @@ struct CableDef {
 /// Returns whether friction at attachments divides a cable into spans with different tensions.
 bool HasFriction(const CableDef& cable);
 
-/// Half space, such as level or inclined ground. It is solid on the side opposite to `normal`.
+/// Half space, such as level or inclined ground. The half space is solid on the side opposite to
+/// `normal`.
 struct PlaneDef {
   std::string name;
   Vec3 normal{0.0, 0.0, 1.0};  ///< Unit vector in W.

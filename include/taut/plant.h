@@ -1,6 +1,6 @@
 /// Interface between controllers and plants. A plant provides observations and a clock, and
 /// receives commands. A plant is a simulated world, several worlds that share a SIMD register, a
-/// recording, or a real robot. Controllers, recorders, learners and displays work with all of them.
+/// recording, or a real robot. Controllers, recorders, learners and displays work with all plants.
 /// A plant contains one or more identical robots, called its lanes.
 ///
 /// Rows are arrays of a plant with cable c of lane j at index [c * lanes + j].
@@ -67,8 +67,8 @@ struct Observation {
   int lanes = 1;
   const double* time_s = nullptr;  ///< Per lane: time of its clock [s].
   ReadingRows cables;              ///< Rows: readings of the cables.
-  /// Row of rest lengths computed from motor shaft angles [m]. They differ from the true rest
-  /// lengths if gears have backlash. Null: they do not differ.
+  /// Row of rest lengths computed from motor shaft angles [m]. These rest lengths differ from the
+  /// true ones if gears have backlash. Null: they do not differ.
   const double* shaft_m = nullptr;
   const std::uint32_t* faults = nullptr;  ///< Row of `FaultBits`; null: no fault detection.
   const Bodies* bodies = nullptr;         ///< Null if unknown.
@@ -211,8 +211,8 @@ struct ControlSetup {
 };
 
 /// Controller: computes commands from observations at the ticks of a clock that is independent of
-/// the physics step. It processes all lanes at once. It must write only lanes in `tick.due`; the
-/// plant does not protect the commands of other lanes.
+/// the physics step. A controller processes all lanes at once. It must write only lanes in
+/// `tick.due`; the plant does not protect the commands of other lanes.
 class Controller {
  public:
   virtual ~Controller() = default;

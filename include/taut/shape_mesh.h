@@ -38,7 +38,7 @@ std::vector<ShapeMesh> ShapesOf(const ModelDef& def, const ShapeOptions& options
 /// without names. Overlapping parts are not merged.
 std::string StlOf(const ModelDef& def, const std::vector<ShapeMesh>& shapes, double scale = 1.0);
 
-/// Returns a binary glTF 2.0 file (.glb). It has a named node per body with a named child per
+/// Returns a binary glTF 2.0 file (.glb). The file has a named node per body with a named child per
 /// shape, one node for all cables, and one material per kind. In glTF, y points up; the root node
 /// rotates z to y and applies the scale.
 std::string GlbOf(const ModelDef& def, const std::vector<ShapeMesh>& shapes, double scale = 1.0);

@@ -15,16 +15,16 @@ std::string RunningProgram();
 /// before other threads start.
 void SetRunningProgram(const std::string& path);
 
-/// Returns the path of a file installed with the running program. It searches the folder of the
-/// program (build), `../share/taut` (installation) and `share/taut` (Python package).
+/// Returns the path of a file installed with the running program. The function searches the folder
+/// of the program (build), `../share/taut` (installation) and `share/taut` (Python package).
 std::optional<std::string> FindBesideProgram(const std::string& path);
 
 /// Returns the folder of the installed files: `share/taut` in the folder of a program or library,
-/// or in a parent folder. This works in a build, in a Python package and below /usr.
+/// or in a parent folder. The search works in a build, in a Python package and below /usr.
 std::optional<std::string> ShippedFolder(const std::string& program = RunningProgram());
 
-/// Returns the kinds of installed files that commands read. They are also folder names: "models",
-/// "experiments", "gaits", "studies", "fits".
+/// Returns the kinds of installed files that commands read. The kinds are also folder names:
+/// "models", "experiments", "gaits", "studies", "fits".
 const std::vector<std::string>& ShippedKinds();
 
 /// Returns the path of an input file. A relative path without a file in the current folder refers

@@ -146,8 +146,8 @@ class Simulation {
   /// Sets the gains of the cable with index `gains.cable`. Returns false without a change if the
   /// cable is not under impedance control or a gain is not finite.
   bool SetGains(const ImpedanceGains& gains, int world = 0);
-  /// Sets an external force on a node [N], in W, from the next step. It adds to pushes and drags of
-  /// the experiment, and acts until it is changed or the world is reset.
+  /// Sets an external force on a node [N], in W, from the next step. The force adds to pushes and
+  /// drags of the experiment, and acts until it is changed or the world is reset.
   void SetNodeForce(const ElementRef& node, const Vec3& force_n, int world = 0);
   /// Replaces all external forces set by the program.
   void SetExternalForces(std::span<const ExternalForce> forces, int world = 0);
@@ -158,7 +158,7 @@ class Simulation {
   // --- state and parameters ----------------------------------------------------------------------
   /// See `WorldBatch::SetBodyState`.
   void SetBodyState(const ElementRef& body, const BodyState& state, int world = 0);
-  /// Returns a parameter. `of`: a body or a cable, depending on the parameter. It is ignored for
+  /// Returns a parameter. `of`: a body or a cable, depending on the parameter. `of` is ignored for
   /// parameters of the whole world.
   double GetParameter(Parameter parameter, const ElementRef& of, int world = 0) const;
   /// Sets a parameter. Returns false and changes nothing if the value is invalid

@@ -145,7 +145,8 @@ struct GaitChange {
   int gait = 0;  ///< Gait number. 0: `gait`; i: `others[i - 1]`.
 };
 
-/// Gait as input of a controller, with a separate clock. Its output is constant between ticks.
+/// Gait as input of a controller, with a separate clock. The output of the gait is constant between
+/// ticks.
 struct GaitInputSpec {
   ClockSpec clock{0.01, 0.0};
   GaitSpec gait;                    ///< Initial gait.

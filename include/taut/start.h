@@ -21,7 +21,7 @@ namespace taut {
 /// without velocity. Returns false after an error.
 bool CheckStart(const RobotSpec& robot, StartKind start, Diagnostics& out);
 
-/// Brings a world to static equilibrium by kinetic damping with fixed rest lengths: all velocities
+/// Brings a world to static equilibrium by kinetic damping with fixed rest lengths. All velocities
 /// become 0 at each peak of the kinetic energy, until no node gains more than 1e-9 m/s in a step.
 /// Time does not advance. `go_on` is called before every step. Returns false if `go_on` returns
 /// false, or after `max_steps`.

@@ -17,7 +17,7 @@
 
 namespace taut {
 
-/// Channel (column) of a trace. Its name ends with the quantity and the unit:
+/// Channel (column) of a trace. The name of a channel ends with the quantity and the unit:
 /// `cable/outer_top_1/tension_n`, `body/segment_0/position_x_m`.
 struct ChannelInfo {
   std::string name;
@@ -34,9 +34,9 @@ std::string UnitOfName(std::string_view name);
 /// Metadata for reproducible runs: pairs such as ("taut_version", "0.1.0"), ("seed", "0").
 using TraceMetadata = std::vector<std::pair<std::string, std::string>>;
 
-/// Writer of a trace during a run. Its file appears with the first row, or when it is finished;
-/// until then, an earlier file at its path remains. A file truncated at any moment (kill -9) is
-/// readable and lacks at most the last second of wall-clock time.
+/// Writer of a trace during a run. The file of the trace appears with the first row, or when the
+/// trace is finished. Until then, an earlier file at the same path remains. A file truncated at any
+/// moment (kill -9) is readable and lacks at most the last second of wall-clock time.
 class TraceWriter {
  public:
   virtual ~TraceWriter() = default;

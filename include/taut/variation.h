@@ -15,8 +15,8 @@ struct ScaleSpec {
 
 /// Noise of the start: uniform random deviations from the described start, drawn from the seed.
 struct StartNoise {
-  /// Largest displacement of the whole robot along +-x and +-y [m]. Its height follows the highest
-  /// terrain below it, and a goal moves with it.
+  /// Largest displacement of the whole robot along +-x and +-y [m]. The height of the robot follows
+  /// the highest terrain below it, and a goal moves with the robot.
   double place_m = 0.0;
   double position_m = 0.0;  ///< Largest displacement of each body along +-x, +-y and upward.
   /// Largest rotation of the whole robot about the vertical, in both directions.

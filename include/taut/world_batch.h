@@ -75,10 +75,12 @@ enum StatusBits : std::uint32_t {
   /// The contact buffer is full. If `WorldStatus::cable` is set instead: the cable touches more
   /// edges and rods than it can bend around (docs/theory/cables.md, section 6).
   kStatusContactOverflow = 1u << 2,
-  /// The step is too long for at least one of: transverse motion under the tension of a cable
-  /// (docs/theory/cables.md, eq. 12), the substeps of stiff cables (eq. 12i), a bend that a turning
-  /// rod moves along its axis (section 6), the joint forces of a body, or its rotation about a
-  /// hinge away from its center of mass (docs/theory/joints.md, section 6).
+  /// The step is too long for at least one of:
+  ///  - transverse motion under the tension of a cable (docs/theory/cables.md, eq. 12);
+  ///  - the substeps of stiff cables (eq. 12i);
+  ///  - a bend that a turning rod moves along its axis (section 6);
+  ///  - the joint forces of a body (docs/theory/joints.md, section 6);
+  ///  - the rotation of a body about a hinge away from its center of mass (same section).
   kStatusStepTooLong = 1u << 3,
   /// The center of mass of a body is below the whole terrain, which has a height field or a mesh
   /// but no plane. The body left the terrain and falls forever.

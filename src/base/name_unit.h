@@ -7,8 +7,8 @@
 namespace taut::base {
 
 /// Unit at the end of a name, as numerator and denominator. damping_n_s_per_m: "N s" and "m".
-/// weight_per_m: "" and "m", because "weight" is no unit. Both are empty if the name ends without a
-/// unit.
+/// weight_per_m: "" and "m", because "weight" is no unit. Both texts are empty if the name ends
+/// without a unit.
 struct NameUnit {
   std::string over, under;
 

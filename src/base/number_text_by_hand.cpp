@@ -1,5 +1,5 @@
-// Conversion of numbers by strtod and snprintf in the C locale. Both round to nearest in glibc and
-// musl.
+// Conversion of numbers by strtod and snprintf in the C locale. Both functions round to nearest in
+// glibc and musl.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

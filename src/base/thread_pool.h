@@ -27,7 +27,7 @@ class ThreadPool {
   int threads() const noexcept { return static_cast<int>(workers_.size()) + 1; }
 
   /// Calls work(thread) on the caller, which is thread 0, and at most once on each other thread
-  /// after it wakes. Returns when all started calls have returned. It does not wait for late
+  /// after it wakes. Returns when all started calls have returned. `Run` does not wait for late
   /// threads, so `work` must distribute the pieces dynamically. Allocates no memory. Only one
   /// caller at a time. If calls throw, the first exception is rethrown on the caller after all
   /// calls have returned; pieces that no thread has begun may then be omitted.

@@ -16,8 +16,8 @@ struct RigidMotion {
 };
 
 /// Returns the rigid motion that maps each point of `from_m` as closely as possible to its partner
-/// in `to_m`, in the least-squares sense. Both must have the same size; without points, the result
-/// is the identity.
+/// in `to_m`, in the least-squares sense. Both sets must have the same size; without points, the
+/// result is the identity.
 RigidMotion Align(std::span<const Vec3> from_m, std::span<const Vec3> to_m);
 
 }  // namespace taut

@@ -22,8 +22,8 @@ struct ConvexHull {
 /// points are coplanar or not finite.
 ConvexHull HullOf(const std::vector<Vec3>& points, int most_corners);
 
-/// Returns the outward unit normal of a face. It is the normalized sum over a triangle fan, so that
-/// rounding of single corners has little effect.
+/// Returns the outward unit normal of a face. The normal is the normalized sum over a triangle fan,
+/// so that rounding of single corners has little effect.
 Vec3 NormalOf(const std::vector<Vec3>& corners, const std::vector<int>& face);
 
 /// Returns the faces as triangle fans, counterclockwise seen from outside.

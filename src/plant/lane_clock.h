@@ -1,4 +1,4 @@
-/// Clock of a sensor or controller. It has one tick counter per lane, since lanes restart
+/// Clock of a sensor or controller. The clock has one tick counter per lane, since lanes restart
 /// independently.
 #pragma once
 

@@ -1,5 +1,5 @@
-/// SIMD kernels of controllers and measures. They are compiled once per instruction set, like the
-/// step (lane_*.cpp). In rows, cable (or driven cable) i of lane j is at [i * lanes + j].
+/// SIMD kernels of controllers and measures. The kernels are compiled once per instruction set,
+/// like the step (lane_*.cpp). In rows, cable (or driven cable) i of lane j is at [i * lanes + j].
 #pragma once
 
 #include <stddef.h>

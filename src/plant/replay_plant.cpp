@@ -16,8 +16,8 @@ using plant::kTimeToleranceS;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// Number of channels that are readings. Their rows are followed by stiffness and commanded rest
-/// length.
+/// Number of channels that are readings. The rows of stiffness and commanded rest length follow the
+/// rows of readings.
 constexpr std::size_t kReadings = [] {
   std::size_t count = 0;
   for (const plant::CableChannel& channel : plant::kCableChannels) {

@@ -12,7 +12,7 @@
 
 namespace taut::plant {
 
-/// Workspace of a thread. It computes one start after the other in a single world.
+/// Workspace of a thread. The workspace computes one start after the other in a single world.
 class StartFinder {
  public:
   explicit StartFinder(const std::shared_ptr<const Model>& model,

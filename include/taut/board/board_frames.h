@@ -77,9 +77,9 @@ struct Reply {
 
 namespace internal {
 
-/// Returns the checksum of a frame. It includes the board number, which the frame does not contain,
-/// so frames of other boards fail the check. Its start value is not 0, so a data line stuck at low
-/// also fails.
+/// Returns the checksum of a frame. The checksum includes the board number, which the frame does
+/// not contain, so frames of other boards fail the check. The start value is not 0, so a data line
+/// stuck at low also fails.
 constexpr uint8_t FrameCrc(const uint8_t* frame, uint8_t board) noexcept {
   return Crc8(frame, kFrameSize - 1, AddToCrc8(0xff, board));
 }

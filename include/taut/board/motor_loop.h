@@ -1,6 +1,6 @@
-/// Motor control loop of a board at 1 kHz. It evaluates the load cell and the encoder and computes
-/// the duty with the control laws of include/taut/control (Mirletz et al. 2015, section III).
-/// Freestanding C++14; float arithmetic gives the same bits on an AVR and on a PC.
+/// Motor control loop of a board at 1 kHz. The loop evaluates the load cell and the encoder and
+/// computes the duty with the control laws of include/taut/control (Mirletz et al. 2015, section
+/// III). Freestanding C++14; float arithmetic gives the same bits on an AVR and on a PC.
 #pragma once
 
 #include <stdint.h>
@@ -29,9 +29,9 @@ struct LoopNumbers {
   float speed_per_count_m_per_s;  ///< Rate of lengthening at one encoder count per tick.
 };
 
-/// Time unit of the PID controllers: half a tick. Their period is then 2, so the compiler removes
-/// multiplications by half a period. To save further multiplications, errors are in sensor counts
-/// and outputs in PWM steps.
+/// Time unit of the PID controllers: half a tick. In this unit, their period is 2, so the compiler
+/// removes multiplications by half a period. To save further multiplications, errors are in sensor
+/// counts and outputs in PWM steps.
 constexpr float kHalfTick_s = 0.5f * kTick_s;
 constexpr float kPeriod = 2.0f;
 

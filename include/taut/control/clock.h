@@ -19,8 +19,8 @@ struct Clock {
   Time phase_s;   ///< Time of tick 0.
 };
 
-/// Tolerance in periods within which a time counts as a tick. It is far above the rounding error of
-/// the product "n steps of h" and far below any step.
+/// Tolerance in periods within which a time counts as a tick. The tolerance is far above the
+/// rounding error of the product "n steps of h" and far below any step.
 template <class Time>
 constexpr Time kTickTolerance = static_cast<Time>(1.0f / 65536.0f);
 

@@ -166,9 +166,9 @@ constexpr CpgState<Real> Advanced(const CpgState<Real>& state, const CpgState<Re
 /// Runge-Kutta method (eq. G.7). Stable if step_s times the sum of |w| R over the couplings of each
 /// oscillator is below 2.7. Choose a much smaller step.
 ///
-/// `feedback` [rad/s]: null, or one s_i per oscillator, a sensor reading times a gain. It is
-/// constant during the call and adds s_i cos theta_i to the phase rate of an oscillator. `states`
-/// and `work` have `network.count` entries.
+/// `feedback` [rad/s]: null, or one s_i per oscillator, a sensor reading times a gain. The feedback
+/// is constant during the call and adds s_i cos theta_i to the phase rate of an oscillator.
+/// `states` and `work` have `network.count` entries.
 template <class Real>
 constexpr void StepCpg(const CpgNetwork<Real>& network, const Real* feedback, Real step_s,
                        uint16_t step_count, CpgState<Real>* states, CpgWork<Real>* work) noexcept {

@@ -38,7 +38,8 @@ constexpr PidState<Real> StartPidAt(Real error) noexcept {
 
 /// Returns an initial state for bumpless transfer (eq. K.14): if the first error is `error`, the
 /// first output is `output`, so the output of the previous control law continues without a jump.
-/// This needs an integral gain above 1e-20 (float division); otherwise the integral starts at 0.
+/// Bumpless transfer needs an integral gain above 1e-20 (float division); otherwise the integral
+/// starts at 0.
 template <class Real>
 constexpr PidState<Real> StartPidFrom(const Pid<Real>& pid, Real error, Real output,
                                       Real period_s) noexcept {

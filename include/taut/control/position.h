@@ -21,10 +21,10 @@ struct ProgramPoint {
   Real rest_length_m;
 };
 
-/// Returns the rest length of the program at `t_s` [m] (docs/theory/control.md, eq. K.10). It is
-/// linear between the points, constant before the first and after the last one. Two points at the
-/// same time are a jump; the later point applies at that time. `count` >= 1; times must not
-/// decrease.
+/// Returns the rest length of the program at `t_s` [m] (docs/theory/control.md, eq. K.10). The
+/// program is linear between the points, constant before the first and after the last one. Two
+/// points at the same time are a jump; the later point applies at that time. `count` >= 1; times
+/// must not decrease.
 template <class Real, class Time>
 constexpr Real RestLengthAt(const ProgramPoint<Real, Time>* points, size_t count,
                             Time t_s) noexcept {

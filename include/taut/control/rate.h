@@ -19,15 +19,15 @@ constexpr DifferenceState<Real> StartDifference(Real length_m) noexcept {
 }
 
 /// Returns an initial state with which the first tick returns (length - rest length) / period, as
-/// in NTRT. In NTRT, the previous length of a cable starts as its rest length, a jump of
-/// centimeters in a millisecond.
+/// in NTRT. NTRT starts the previous length at the rest length, which is a jump of centimeters in a
+/// millisecond.
 template <class Real>
 constexpr DifferenceState<Real> StartDifferenceAtRestLength(Real rest_length_m) noexcept {
   return DifferenceState<Real>{rest_length_m};
 }
 
 /// Returns V_n = (l_n - l_(n-1)) / h [m/s], lengthening positive (docs/theory/control.md, eq. K.4).
-/// It is the mean rate over the last period and therefore lags by half a period. An encoder with
+/// V_n is the mean rate over the last period and therefore lags by half a period. An encoder with
 /// quantum q gives rates in multiples of q / h.
 template <class Real>
 constexpr Real StepDifference(DifferenceState<Real>& state, Real length_m, Real period_s) noexcept {

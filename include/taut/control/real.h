@@ -1,8 +1,8 @@
 /// Number types of the controllers: float on a microcontroller, double in a simulation, or a SIMD
 /// type with one world per lane.
 ///
-/// All code in this folder is C++14 without standard library, heap, exceptions or libm. It uses
-/// only + - * / and comparisons, which give the same bits on an AVR and on a PC
+/// All code in this folder is C++14 without standard library, heap, exceptions or libm. The code
+/// uses only + - * / and comparisons, which give the same bits on an AVR and on a PC
 /// (docs/theory/control.md). A SIMD type must have a static `Splat` and, in its namespace for
 /// argument-dependent lookup, `Max`, `Min`, `Select` and, for its conditions, `Any`.
 #pragma once

@@ -8,9 +8,9 @@
 /// change. A slow modulation of the signal strength (beat) moves the robot out of poses in which
 /// the signals balance.
 ///
-/// Sensors on a real robot: the direction of each strut in the world, from an accelerometer and a
-/// compass on the strut (its rotation about its axis does not matter), and the horizontal direction
-/// of the goal, from a beacon and a compass. Equations: docs/theory/gaits.md.
+/// Sensors on a real robot: an accelerometer and a compass on each strut measure the direction of
+/// the strut in the world (not its rotation about its axis). A beacon and a compass measure the
+/// horizontal direction of the goal. Equations: docs/theory/gaits.md.
 #pragma once
 
 #include <stddef.h>

@@ -8,8 +8,8 @@
 
 namespace taut::sim {
 
-/// Returns the axial force of both parts of a bend, divided by the tension. It is zero if the cable
-/// is straight on the unrolled cylinder, and decreases with `along`.
+/// Returns the axial force of both parts of a bend, divided by the tension. This force is zero if
+/// the cable is straight on the unrolled cylinder, and decreases with `along`.
 TAUT_INLINE double AsideAt(const Tangents<Vec3>& way, double along) noexcept {
   const Rises<double> rise = RisesAt(way, along);
   return rise.behind / Sqrt(1.0 + rise.behind * rise.behind) -

@@ -1,6 +1,6 @@
-/// Cables with capstan friction (constraint/cable_chain.h, docs/theory/cables.md, section 5). Their
-/// spans are measured in all lanes at once, and solved lane by lane together with all other
-/// constraints.
+/// Cables with capstan friction (constraint/cable_chain.h, docs/theory/cables.md, section 5). The
+/// spans of these cables are measured in all lanes at once, and solved lane by lane together with
+/// all other constraints.
 #pragma once
 
 #include "sim/cables/cable_across.inl"

@@ -12,8 +12,8 @@
 
 namespace taut::sim {
 
-/// Edges and rods that the cable of one lane has left during an update. They are excluded from the
-/// rest of the update, so that it terminates.
+/// Edges and rods that the cable of one lane has left during an update. These edges and rods are
+/// excluded from the rest of the update, so that it terminates.
 struct LeftBehind {
   static constexpr int kMost = 2 * kMostBends;
   double key[kMost];

@@ -20,8 +20,8 @@ TAUT_INLINE void SetWheels(const View& m, const Rows<W>& s, const CableTable& ca
   }
 }
 
-/// Computes the path points on wheels from the positions of the attachments. Their velocities are
-/// those of points fixed to the bodies of the wheels.
+/// Computes the path points on wheels from the positions of the attachments. Each path point has
+/// the velocity of a point fixed to the body of its wheel.
 template <class W>
 [[gnu::noinline]] void PutOnWheels(const View& m, const Rows<W>& s, const CableTable& cable,
                                    Scratch<W>& work, const Spot<W>* spots,

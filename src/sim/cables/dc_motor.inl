@@ -89,8 +89,8 @@ void LoadSupplies(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexce
   }
 }
 
-/// Returns the rest length on the spool. It equals the value from the gear angle, or is less within
-/// the backlash. A taut cable (length `l`) pulls the spool against the gear.
+/// Returns the rest length on the spool. The result equals the value from the gear angle, or is
+/// less within the backlash. A taut cable (length `l`) pulls the spool against the gear.
 template <class W>
 TAUT_INLINE W RestOnSpool(const MotorTable& t, W wound, W before, W l) noexcept {
   if (t.backlash_m == 0.0) return wound;

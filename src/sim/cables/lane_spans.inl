@@ -33,7 +33,7 @@ TAUT_INLINE MaskOf<W> HasSpan(const View& m, const Rows<W>& s, const CableTable&
   return !(s.bend[m.touches[cable.touch].first_bend + span - 1].key == W::Splat(kNoKey));
 }
 
-/// Returns the lanes in which a link acts. All lanes share the links, but each lane has its own
+/// Returns the lanes in which a link acts. All lanes share the links, but each lane has separate
 /// bends.
 template <class W>
 TAUT_INLINE MaskOf<W> Pulls(const RowLink<W>& link) noexcept {

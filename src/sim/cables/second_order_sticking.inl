@@ -3,7 +3,7 @@
 ///
 /// A contact row constrains the velocity of a point at the middle of the step, but a sticking point
 /// moves along an arc until the middle of the next step. The biases compensate for this difference.
-/// They follow from the two half drifts of the shape's skeleton, with the momentum under the
+/// The biases follow from the two half drifts of the shape's skeleton, with the momentum under the
 /// torques of contacts and stiff cables from the previous step.
 #pragma once
 

@@ -1,6 +1,6 @@
 /// Stiff cables: the implicit tension is the mean of the spring force over the stretch from the
-/// start to the end of the step (docs/theory/cables.md, eq. 8-11). Its work equals the change of
-/// the spring energy, even if the cable becomes slack or taut.
+/// start to the end of the step (docs/theory/cables.md, eq. 8-11). The work of this tension equals
+/// the change of the spring energy, even if the cable becomes slack or taut.
 ///
 /// Cables that would be unstable with explicit forces at this step are solved together with the
 /// contacts. Soft cables are explicit, except in a step in which they become slack or taut.
@@ -102,8 +102,8 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
   row.l[0] = Select(on, Min(h * s.tension[c], row.upper), zero);
 }
 
-/// Returns the tension of a stiff cable relative to the largest stable tension (eq. 12). The limit
-/// comes from the explicit transverse force; along the cable, any tension is stable.
+/// Returns the tension of a stiff cable relative to the largest stable tension (eq. 12). The
+/// explicit transverse force causes the limit; along the cable, any tension is stable.
 template <class W>
 W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {
   return Select(row.live > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));

@@ -238,8 +238,8 @@ class Compiler {
     });
   }
 
-  /// Adds a surface of the terrain. Every pair of a shape and a surface has its own clearance, so
-  /// that the contact of a body's lowest rod does not cause tests of its other rods.
+  /// Adds a surface of the terrain. Every pair of a shape and a surface has a separate clearance,
+  /// so that the contact of a body's lowest rod does not cause tests of its other rods.
   void Ground(const ShapeRef& ref, sim::Surface surface, const Material& material) {
     t_.surfaces.push_back(std::move(surface));
     sim::ShapeTable s;

@@ -1,7 +1,7 @@
 /// Constraint of a cable with capstan friction on eyelets, wheels, edges or rods
-/// (docs/theory/cables.md, eq. 16-19). It has one row per span. The velocity u of a row is the rate
-/// at which the span shortens after the step; its impulse is the mean tension of the span over the
-/// step, times h. The impulses depend on the velocities of all spans together.
+/// (docs/theory/cables.md, eq. 16-19). The constraint has one row per span. The velocity u of a row
+/// is the rate at which the span shortens after the step. The impulse of a row is the mean tension
+/// of the span over the step, times h. The impulses depend on the velocities of all spans together.
 #pragma once
 
 #include "math/cable_law.h"

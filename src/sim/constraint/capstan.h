@@ -22,7 +22,8 @@ struct CapstanSpan {
   double p, q;  ///< > 0 [m/N]
 };
 
-/// `Tag`: type that differs between instruction sets, so that each has its own instantiation.
+/// `Tag`: type that differs between instruction sets, so that each set has a separate
+/// instantiation.
 template <class Tag>
 struct Capstan {
   int count;

@@ -93,8 +93,8 @@ struct ContactPoint {
     Friction(u, center, inv_e, mu * l0[0], yn > zero, out);
   }
 
-  /// Computes the 3x3 matrix, row by row. It is not symmetric for a sliding contact, since its
-  /// friction depends on the normal impulse.
+  /// Computes the 3x3 matrix, row by row. The matrix is not symmetric for a sliding contact, since
+  /// its friction depends on the normal impulse.
   void Derivative(const Branch& b, Num e, Num* g) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     const Num inv_e = one / e;

@@ -5,7 +5,7 @@
 ///
 ///   u: relative angular velocity of the bodies after the step, in the rows' units; l: impulses
 ///
-/// The limit applies to the length of l. It is the same about every axis, independent of the
+/// The limit applies to the length of l. The limit is the same about every axis, independent of the
 /// directions of the rows.
 #pragma once
 
@@ -64,8 +64,8 @@ struct TurnFriction {
     }
     return worst;
   }
-  /// While sliding, the impulse along s is at the limit; across s, (1 - (1 - e) shrink) dl + shrink
-  /// / w du = -l.
+  /// While sliding, the impulse along s is at the limit. Across s:
+  ///   (1 - (1 - e) shrink) dl + shrink / w du = -l
   void Linearize(const Branch& b, const Num* u, const Num* l_now, Num e,
                  LinearLaw<Num, 3>& out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);

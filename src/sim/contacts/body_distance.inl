@@ -7,8 +7,8 @@
 
 namespace taut::sim {
 
-/// Lower bound of the distance between two bodies. It holds in the requested lanes; `everywhere`:
-/// in all lanes, because no shape needed the scalar code of the narrow phase.
+/// Lower bound of the distance between two bodies. The bound holds in the requested lanes;
+/// `everywhere`: in all lanes, because no shape needed the scalar code of the narrow phase.
 template <class W>
 struct BodyDistance {
   W least = W::Splat(1e300);

@@ -45,8 +45,8 @@ TAUT_INLINE void SolveSymmetric(Num (&a)[N][N], Num (&x)[N]) noexcept {
 template <class Num, int kLinks, class Share>
 void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const V3<Num>& t1,
               const V3<Num>& t2, const Share& share, double most) noexcept {
-  // Regularization of the least-squares matrix, whose largest entries are about 1. It selects the
-  // smallest motion.
+  // Regularization of the least-squares matrix, whose largest entries are about 1. The
+  // regularization selects the smallest motion.
   constexpr double kTiny = 1e-9;
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
   Num number = zero, reach = zero;

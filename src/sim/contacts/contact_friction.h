@@ -1,6 +1,6 @@
 /// Friction laws with more than two coefficients per pair: dependent on speed or direction, or a
-/// custom class (docs/theory/friction.md). They are evaluated once per contact before the solver,
-/// in scalar code shared by all instruction sets.
+/// custom class (docs/theory/friction.md). These laws are evaluated once per contact before the
+/// solver, in scalar code shared by all instruction sets.
 #pragma once
 
 #include "sim/data/view.h"

@@ -69,9 +69,9 @@ Station StationOf(const RoundShape& round, const TouchPoint& t) noexcept {
   return {Load(t.point) + (0.5 * t.gap_m + round.radius_m) * Load(t.normal), false};
 }
 
-/// Returns whether another box that contains the point `place` is nearer to the rod point. Then the
-/// segment from `place` to the rod point is not the shortest, and its start lies inside the other
-/// box. If several boxes are equally near to an end, the first one has the contact.
+/// Returns whether another box that contains the point `place` is nearer to the rod point. If so,
+/// the segment from `place` to the rod point is not the shortest, and its start lies inside the
+/// other box. If several boxes are equally near to an end, the first one has the contact.
 bool IsHidden(const ShapeTable* shapes, int number, const Vec3& place, const Station& station,
               double radius_m, bool* shared) noexcept {
   const ShapeTable& own = shapes[number];

@@ -1,8 +1,8 @@
 /// Pairs of shapes of moving bodies: keys of their contacts and combined materials.
 ///
-/// The number of such pairs grows with the square of a model, so no table stores them. Their keys
-/// follow from the numbers of shapes of the bodies in each row (View::shape_pairs_before). Scalar
-/// code, compiled once for all instruction sets.
+/// The number of such pairs grows with the square of a model, so no table stores them. The keys of
+/// these pairs follow from the numbers of shapes of the bodies in each row
+/// (View::shape_pairs_before). Scalar code, compiled once for all instruction sets.
 #pragma once
 
 #include "sim/data/view.h"

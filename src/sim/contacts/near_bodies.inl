@@ -105,8 +105,8 @@ bool ListNear(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, W rea
 }
 
 /// Makes the list of near bodies again if a pair that is not in it may touch in this step. If the
-/// list is too short, sets Group::near_count to -1. Then the trees are built in every step, and
-/// near_m[0] is the distance for EachNearPair.
+/// list is too short, sets Group::near_count to -1. In this case, the trees are built in every
+/// step, and near_m[0] is the distance for EachNearPair.
 template <class W>
 void FindNear(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, W h) noexcept {
   const W two = W::Splat(2.0 + kNearRounding), least = W::Splat(2.0 * kContactMarginM);

@@ -1,7 +1,7 @@
 /// Groups of cables that are implicit in tension and direction (docs/theory/cables.md, section 3).
-/// A group contains all cables of bodies that cables connect. It is implicit if one of its cables
-/// is stiff at this step. The selection depends on the model, its parameters and the step, never on
-/// the state.
+/// A group contains all cables of bodies that cables connect. A group is implicit if one of its
+/// cables is stiff at this step. The selection depends on the model, its parameters and the step,
+/// never on the state.
 #pragma once
 
 #include "sim/data/view.h"

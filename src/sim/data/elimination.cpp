@@ -51,8 +51,8 @@ bool Eliminate(BodyGraph& graph, int block_capacity, int* order, int* place,
     place[best] = k;
     lower += least;
     const uint64_t* const row = graph.Row(best);
-    // The neighbors of the eliminated body become neighbors of each other. Its row stays as the
-    // pattern of its column below the diagonal.
+    // The neighbors of the eliminated body become neighbors of each other. The row of the
+    // eliminated body stays as the pattern of its column below the diagonal.
     ForEachBit(row, words, [&](int i) {
       uint64_t* const other = graph.Row(i);
       for (int w = 0; w < words; ++w) other[w] |= row[w];

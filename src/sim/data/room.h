@@ -90,8 +90,8 @@ struct Room {
 #endif
     return {first, static_cast<ptrdiff_t>(count)};
   }
-  /// Overwrites all allocated arrays. They must be allocated again, which costs nothing except
-  /// under AddressSanitizer.
+  /// Overwrites all allocated arrays. Allocate the arrays again, which costs nothing except under
+  /// AddressSanitizer.
   void Fill(unsigned char byte) const noexcept {
 #ifdef TAUT_ADDRESS_SANITIZER
     __asan_unpoison_memory_region(memory, used);

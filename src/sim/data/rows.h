@@ -108,7 +108,7 @@ struct StiffCable : CableRow<W> {
   W across;  ///< 1 / (largest stable tension) [1/N] (cables.md, eq. 12).
 };
 
-/// Row of a joint. Its direction is in W, on body b of the joint.
+/// Row of a joint. The direction of the row is in W, on body b of the joint.
 template <class W>
 struct HeldRow : JointRow<W> {
   int joint;

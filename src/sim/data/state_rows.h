@@ -1,7 +1,7 @@
 /// State rows of a group of worlds: the list of all data of a group, for serialization and hashes.
-/// It determines the memory layout, the access in a step, start values, contents of snapshots, and
-/// the treatment of halted worlds. A step includes this header, so it does not use the standard
-/// library (kernel.inl).
+/// The list determines the memory layout, the access in a step, start values, contents of
+/// snapshots, and the treatment of halted worlds. A step includes this header, so it does not use
+/// the standard library (kernel.inl).
 #pragma once
 
 namespace taut::sim {

@@ -218,8 +218,8 @@ struct View {
   const std::uint32_t* shape_pairs_before;
   const ApartTable* apart;
   const int* first_apart;
-  /// All pairs of moving bodies; none if they are many. Then `near_capacity` is the capacity of a
-  /// list of near bodies, otherwise 0.
+  /// All pairs of moving bodies; none if there are too many. With too many pairs, `near_capacity`
+  /// is the capacity of a list of near bodies, otherwise 0.
   const MovingPair* moving_pairs;
   int moving_pair_count, near_capacity;
   double near_m;  ///< Motion of a body after which the list of near bodies is made again [m].

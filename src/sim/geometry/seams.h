@@ -2,7 +2,8 @@
 ///
 /// Contacts are detected per piece. A contact with one piece may be inside the joint surface: on an
 /// edge where a neighbor continues in the same plane, or on a side wall covered by a neighbor. The
-/// functions below reject such contacts. They inspect only the neighborhood of one point.
+/// functions below reject such contacts. These functions inspect only the neighborhood of one
+/// point.
 ///
 /// A step includes this header, so it does not use the standard library.
 #pragma once

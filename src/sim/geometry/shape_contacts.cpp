@@ -43,8 +43,9 @@ void KeepCloser(CenterPair& best, const CenterPair& other) noexcept {
   if (other.distance_m < best.distance_m) best = other;
 }
 
-/// Returns the closest points of two centerlines. They are interior points where the lines are
-/// closest, or ends. All candidates are tried, so nearly parallel lines lose no accuracy.
+/// Returns the closest points of two centerlines. Each closest point is an interior point where the
+/// lines are closest, or an end. All candidates are tried, so nearly parallel lines lose no
+/// accuracy.
 CenterPair ClosestPair(const Segment& a, const Segment& b) noexcept {
   CenterPair best = FromA(a.from, b);
   KeepCloser(best, FromA(a.to, b));

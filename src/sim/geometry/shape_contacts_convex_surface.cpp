@@ -104,8 +104,8 @@ class ConvexSearch {
   }
 
   /// Returns whether a corner has passed through a sheet at its nearest place, instead of around
-  /// its border or over a ridge. Then the segment from the corner to the center of the body also
-  /// crosses the sheet.
+  /// its border or over a ridge. If it has passed through, the segment from the corner to the
+  /// center of the body also crosses the sheet.
   bool IsThrough(const Vec3& corner, const SurfacePlace& place) const noexcept {
     const double depth_m = place.distance_m, side = Dot(place.normal, center_ - place.at);
     if (depth_m > kDeepestSheet * thinnest_m_) return false;

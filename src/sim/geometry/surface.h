@@ -53,8 +53,8 @@ struct SurfaceTable {
   double bucket_m = 0, inv_bucket = 0;
   const int* first_in_bucket = nullptr;
   const int* in_bucket = nullptr;  ///< Triangles in ascending order.
-  // Sharp edges and corners of the mesh, each assigned to one of its triangles. Those of triangle k
-  // start at first_edge[k] and first_corner[k].
+  // Sharp edges and corners of the mesh, each assigned to one of its triangles. The edges and
+  // corners of triangle k start at first_edge[k] and first_corner[k].
   const int *first_edge = nullptr, *first_corner = nullptr;
   const MeshEdge* edges = nullptr;
   const MeshCorner* sharp_corners = nullptr;

@@ -1,5 +1,5 @@
-/// Helpers of the narrow phase (shape_contacts.h). They use compiler builtins, because a step uses
-/// no standard library.
+/// Helpers of the narrow phase (shape_contacts.h). The helpers use compiler builtins, because a
+/// step uses no standard library.
 #pragma once
 
 #include "math/scalar.h"

@@ -36,10 +36,10 @@ TAUT_INLINE W StiffnessAcross(const V3<W>& force, const V3<W>& gap) noexcept {
 }
 
 /// Computes an upper bound of every body's ratio from its inertia. Rotation about the principal
-/// axes has the matrix I^-1 N with N = (F . r) 1 - F r^T per joint. Its eigenvalues are at most the
-/// largest row sum of absolute values. A distance joint has the transverse stiffness T = tension /
-/// length. A body's part of T |d_b - d_a|^2 / 2 is at most T |d|^2, d = v + w x r: 4 T / m and 4 T
-/// |r|^2 / I.
+/// axes has the matrix I^-1 N with N = (F . r) 1 - F r^T per joint. The eigenvalues of this matrix
+/// are at most the largest row sum of absolute values. A distance joint has the transverse
+/// stiffness T = tension / length. A body's part of T |d_b - d_a|^2 / 2 is at most T |d|^2, d = v +
+/// w x r: 4 T / m and 4 T |r|^2 / I.
 template <class W>
 JointShare<W> BoundOfShares(const View& m, const Rows<W>& s, Scratch<W>& work,
                             W quarter_h2) noexcept {

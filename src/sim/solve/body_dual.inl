@@ -22,7 +22,7 @@ class BodyDual {
   static constexpr int kSize = 3 * kContacts;
   static constexpr int kMaxIterations = 8;
   /// Redundant friction (two contacts along one rod) makes the system singular. This compliance
-  /// selects the smallest change. It does not affect the converged result.
+  /// selects the smallest change. The compliance does not affect the converged result.
   static constexpr double kCompliance = 1e-9;
   using Law = ContactPoint<W, 1>;
 

@@ -1,7 +1,8 @@
 /// Sparse linear system of Newton's method in the velocities of bodies (docs/theory/contact.md, eq.
-/// 21, 25). It has a 6x6 block for each pair of interacting bodies and is factored in the order of
-/// the bodies, without pivoting. M + J^T G J is positive definite except for the coupling of
-/// friction to the normal impulse. Line search or residual reject a step that a bad pivot spoils.
+/// 21, 25). The matrix has a 6x6 block for each pair of interacting bodies and is factored in the
+/// order of the bodies, without pivoting. M + J^T G J is positive definite except for the coupling
+/// of friction to the normal impulse. Line search or residual reject a step that a bad pivot
+/// spoils.
 ///
 /// Blocks of smaller unknowns are padded with zeros. Only the velocities of an unknown are
 /// eliminated; couplings are always 6x6, so that loops have fixed lengths. Prescribed unknowns have

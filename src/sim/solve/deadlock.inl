@@ -20,7 +20,7 @@ inline constexpr bool kRelaxes = requires(Law& law) {
 };
 
 /// Relaxes inconsistent laws at m.l, m.u and the branches of their residual: changes their biases
-/// so that the laws are satisfied. This is done only if no bias changes by more than
+/// so that the laws are satisfied. The relaxation is applied only if no bias changes by more than
 /// kDisagreementMPerS and the island is then solved. Returns false if nothing has changed.
 template <class Num, class P>
 bool Relax(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {

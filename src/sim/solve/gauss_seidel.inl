@@ -1,6 +1,6 @@
 /// Second stage of an island's solve: Gauss-Seidel sweeps, which solve one constraint after the
-/// other exactly (docs/theory/contact.md, eq. 23). They converge slowly if loads pass through many
-/// bodies, but need no good initial guess.
+/// other exactly (docs/theory/contact.md, eq. 23). Sweeps converge slowly if loads pass through
+/// many bodies, but need no good initial guess.
 #pragma once
 
 #include "sim/constraint/links.h"
