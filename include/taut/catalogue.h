@@ -17,7 +17,7 @@ struct CatalogueMotor {
   double gear_ratio = 1.0;               ///< Turns of the motor per turn of the spool, > 0.
   double gear_efficiency = 1.0;          ///< Efficiency while winding in, 0..1.
   std::optional<double> spool_radius_m;  ///< Radius to the center line of the cable, > 0.
-  // at the motor shaft, before the gear
+  // Values at the motor shaft, before the gear.
   double rated_torque_n_m = 0.0;                      ///< Continuous torque, > 0.
   double peak_torque_n_m = 0.0;                       ///< Short-time torque, > 0.
   double max_speed_rad_per_s = 0.0;                   ///< At the rated torque, > 0.

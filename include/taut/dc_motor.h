@@ -25,7 +25,7 @@ struct DcMotorDef {
   /// [?] Fraction of the motor's power that reaches the cable, 0..1.
   double gear_efficiency = 0.66;
   double backlash_rad = 0.0;        ///< [?] Free play of the spool, >= 0.
-  double spool_radius_m = 5.17e-3;  ///< [?] To the center line of the wound cable, > 0.
+  double spool_radius_m = 5.17e-3;  ///< [?] Radius to the center line of the wound cable, > 0.
 
   // --- driver and supply ---
   double driver_resistance_ohm = 0.45;  ///< Sum of both conducting transistors, >= 0.
@@ -33,7 +33,7 @@ struct DcMotorDef {
   /// sum of their currents. Their supply voltages and supply resistances must be equal.
   std::string supply = "supply";
   double supply_voltage_v = 12.0;      ///< Open-circuit voltage, > 0.
-  double supply_resistance_ohm = 0.0;  ///< [?] Supply and leads, >= 0.
+  double supply_resistance_ohm = 0.0;  ///< [?] Resistance of supply and leads, >= 0.
 
   // --- heat ---
   double rated_temperature_c = 22.0;       ///< Temperature at which `resistance_ohm` holds.
@@ -45,8 +45,8 @@ struct DcMotorDef {
   double housing_thermal_time_s = 220.0;             ///< Time constant, > 0.
 
   // --- rest length servo: duty = gain (L - target) + damping dL/dt ---
-  double servo_gain_per_m = 4000.0;     ///< [?] Duty per length, >= 0.
-  double servo_damping_s_per_m = 30.0;  ///< [?] Duty per speed, >= 0.
+  double servo_gain_per_m = 4000.0;     ///< [?] Duty per rest length error, >= 0.
+  double servo_damping_s_per_m = 30.0;  ///< [?] Duty per rest length rate, >= 0.
 
   bool operator==(const DcMotorDef&) const = default;
 };
@@ -68,7 +68,7 @@ struct MotorState {
   double current_a = 0.0;  ///< Winding current; > 0 winds in.
   /// Angle without wrapping; 0 at the rest length of the model; increases while winding in.
   double rotor_angle_rad = 0.0;
-  double rotor_speed_rad_per_s = 0.0;  ///< > 0 winds in.
+  double rotor_speed_rad_per_s = 0.0;  ///< Rotor speed; > 0 winds in.
   double winding_temperature_c = 0.0;
   double housing_temperature_c = 0.0;
   double supply_voltage_v = 0.0;  ///< Voltage of the supply under the load of all its motors.

@@ -74,7 +74,7 @@ struct EnvView {
 
 struct EnvOptions {
   int worlds = 1;
-  int threads = 1;                ///< 0: one per core.
+  int threads = 1;                ///< Number of threads; 0: one per core.
   std::optional<Simd> simd = {};  ///< Absent: `BestSimd()`; scalar for a single world.
   Autoreset autoreset = Autoreset::kNextStep;
   bool randomise = true;  ///< False disables domain randomization (`randomise`).

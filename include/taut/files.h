@@ -61,7 +61,7 @@ class NewFile {
 
 /// Identity of the file at a path. The identity changes if another file replaces that file.
 struct FileIdentity {
-  std::uint64_t device = 0, file = 0;  ///< 0, 0: no file.
+  std::uint64_t device = 0, file = 0;  ///< Device and file number; 0, 0: no file.
   bool operator==(const FileIdentity&) const = default;
 };
 /// Returns the identity of the file at `path`; {0, 0} without a file.

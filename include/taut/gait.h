@@ -36,9 +36,9 @@ enum class GaitDrives {
 struct SineWave {
   std::string name;
   CableMatch cables;
-  double amplitude = 0.0;  ///< [m/s], or [m] for rest lengths. May be negative.
+  double amplitude = 0.0;  ///< Amplitude [m/s], or [m] for rest lengths. May be negative.
   double phase_rad = 0.0;
-  double offset = 0.0;  ///< [m/s], or [m].
+  double offset = 0.0;  ///< Mean value [m/s], or [m] for rest lengths.
   /// Phase added per segment toward the rear, for a traveling wave. Cables between segments i - 1
   /// and i, with names that end in _i, get (i - 1) times this phase.
   double phase_per_segment_rad = 0.0;

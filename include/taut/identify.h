@@ -37,7 +37,7 @@ struct FitPoint {
 /// Options of an `Identification`. An identification caches computed points within a run, and
 /// across runs if `memory_file` is set.
 struct IdentifyOptions {
-  int threads = 0;          ///< 0: one per core.
+  int threads = 0;          ///< Number of threads; 0: one per core.
   std::string memory_file;  ///< SQLite file; created if missing. Empty: no file.
   const std::atomic<bool>* stop = nullptr;
 };

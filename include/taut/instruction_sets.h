@@ -11,7 +11,7 @@
 namespace taut {
 
 struct InstructionSet {
-  std::string_view name;  ///< As in TAUT_SIMD, and in `simd` of Python.
+  std::string_view name;  ///< Name in TAUT_SIMD, and in `simd` of Python.
   Simd simd = Simd::kScalar;
   bool is_built = false;   ///< Whether this build contains code for the instruction set.
   bool runs_here = false;  ///< Whether it is built and supported by this processor.

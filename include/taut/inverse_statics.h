@@ -115,7 +115,7 @@ struct ForceIntervals {
   std::vector<ForceInterval> cable;  ///< Tensions; both ends are equal for known tensions.
   /// Forces of the joints on their body b, in W.
   std::vector<ForceInterval> joint_x, joint_y, joint_z;
-  std::vector<Unbalanced> left;  ///< As `HoldingForces::left`.
+  std::vector<Unbalanced> left;  ///< Residuals, as in `HoldingForces::left`.
   std::vector<std::string> notes;
 };
 

@@ -27,7 +27,7 @@ struct SizingTask {
   std::vector<double> force_n;      ///< One per load case; tension > 0; for cables >= 0.
   double yield_factor = 1.0;        ///< Smallest allowed ratio of yield stress to stress, > 0.
   double buckling_factor = 1.0;     ///< Smallest allowed ratio of Euler load to compression, > 0.
-  double buckling_length_m = 0.0;   ///< 0: `length_m`, for a rod with hinged ends.
+  double buckling_length_m = 0.0;   ///< Buckling length; 0: `length_m` (hinged ends).
   double inner_radius_share = 0.0;  ///< Inner / outer radius of a tube, 0 <= ratio < 1; 0: solid.
   /// Largest allowed ratio of buckling length to radius of gyration, > 0.
   std::optional<double> slenderness;

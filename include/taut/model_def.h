@@ -26,7 +26,7 @@ namespace taut {
 struct StribeckDef {
   /// vS: speed at which half of the difference of both coefficients remains, > 0.
   double speed_m_per_s = 0.0;
-  double viscous_friction_s_per_m = 0.0;  ///< c: increase of the coefficient with speed, >= 0.
+  double viscous_friction_s_per_m = 0.0;  ///< Increase c of the coefficient with speed, >= 0.
   bool operator==(const StribeckDef&) const = default;
 };
 
@@ -34,7 +34,7 @@ struct StribeckDef {
 /// surface, by its sliding direction (docs/theory/friction.md, eq. 3). `sideways` is normal to the
 /// axis.
 struct FrictionDirections {
-  double forward = 1.0, backward = 1.0, sideways = 1.0;  ///< >= 0.
+  double forward = 1.0, backward = 1.0, sideways = 1.0;  ///< Friction factors, >= 0.
   /// Forward direction of any length in W at t = 0, fixed to the body. The zero vector (only for
   /// rods) means: from `from_m` to `to_m`.
   Vec3 axis;
@@ -55,7 +55,7 @@ struct Material {
 /// Rigid body. Shapes, cables and nodes refer to its index.
 struct BodyDef {
   std::string name;
-  double mass_kg = 0.0;             ///< > 0; ignored if `fixed`.
+  double mass_kg = 0.0;             ///< Mass, > 0; ignored if `fixed`.
   Vec3 com_m;                       ///< Center of mass in W.
   Inertia inertia_kg_m2;            ///< About the center of mass, in axes parallel to W.
   Vec3 velocity_m_per_s;            ///< Velocity of the center of mass, in W.
@@ -68,7 +68,7 @@ struct SphereDef {
   std::string name;
   int body = 0;
   Vec3 center_m;
-  double radius_m = 0.0;  ///< > 0.
+  double radius_m = 0.0;  ///< Radius, > 0.
   Material material;
   bool collides = true;
   bool operator==(const SphereDef&) const = default;
@@ -79,7 +79,7 @@ struct CapsuleDef {
   std::string name;
   int body = 0;
   Vec3 from_m, to_m;
-  double radius_m = 0.0;  ///< > 0.
+  double radius_m = 0.0;  ///< Radius, > 0.
   Material material;
   bool collides = true;
   MemberDef member = {};  ///< Section and limits of the rod as a strut.
@@ -137,7 +137,7 @@ struct ActuatorDef {
   double max_acceleration_m_per_s2 = 0.0;
   /// Tension above which the actuator does not wind in, > 0; infinity: none.
   double max_force_n = 0.0;
-  double min_rest_length_m = 0.0;  ///< >= 0.
+  double min_rest_length_m = 0.0;  ///< Smallest rest length, >= 0.
   double min_length_m = 0.0;  ///< Cable length below which the actuator does not wind in, >= 0.
   std::optional<DcMotorDef> dc_motor;  ///< Present only with kDcMotor.
   bool operator==(const ActuatorDef&) const = default;
@@ -190,7 +190,7 @@ struct CableDef {
   /// Obstacles of the cable. All except kNone require two attachments without wheels, and
   /// `radius_m` > 0.
   CableTouches touches = CableTouches::kNone;
-  double radius_m = 0.0;  ///< > 0 unless `touches` is kNone.
+  double radius_m = 0.0;  ///< Cable radius, > 0 unless `touches` is kNone.
   /// Friction coefficient mu at obstacles, along and across the cable, >= 0. Not with a `dc_motor`.
   double touch_friction = 0.0;
   MemberDef member = {};

@@ -14,7 +14,7 @@ enum class Measure {
   kDistancePerEnergy,  ///< Distance divided by motor work [m/J]: tension times length wound in.
   kNearer,    ///< Decrease of the distance from `GoalSpec::body` to the goal since `from_s` [m].
   kTracking,  ///< Minus the root mean square of tension minus set point [N].
-  kNone,      ///< 0; for penalties or a custom score only.
+  kNone,      ///< Always 0; for penalties or a custom score only.
 };
 
 /// Penalty on tension: `penalty_per_n` for each newton of the world's largest tension above a

@@ -34,7 +34,7 @@ struct PageOptions {
   double speed = 1;
   /// Address to listen on; the default accepts only connections from this machine.
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;  ///< 0: any free port.
+  std::uint16_t port = 0;  ///< Port of the server; 0: any free port.
   /// Folder of the viewer's files, used if neither $TAUT_WEB nor the folder of the program contains
   /// them.
 #ifdef TAUT_WEB_FOLDER  // set by the CMake target

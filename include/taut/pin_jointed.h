@@ -45,9 +45,9 @@ struct PinMember {
   double length_m = 0;
   double force_n = 0;  ///< Tension > 0.
   double force_density_n_per_m = 0;
-  double stiffness_n_per_m = 0;  ///< 0: rigid.
+  double stiffness_n_per_m = 0;  ///< Axial stiffness; 0: rigid.
   double rest_length_m = 0;      ///< For a rigid member: its length.
-  MemberDef section;             ///< As in the model; unknown values are 0.
+  MemberDef section;             ///< Section in the model; unknown values are 0.
 };
 
 /// Cluster: members with equal force, such as all segments of a cable, or those between attachments
@@ -55,7 +55,7 @@ struct PinMember {
 struct PinCluster {
   std::string name;
   double length_m = 0, rest_length_m = 0, force_n = 0;
-  double stiffness_n_per_m = 0;  ///< 0: rigid.
+  double stiffness_n_per_m = 0;  ///< Axial stiffness; 0: rigid.
 };
 
 struct PinJointed {

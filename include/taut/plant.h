@@ -57,8 +57,8 @@ class Bodies {
   virtual ~Bodies() = default;
   /// Returns the state of a body in SI units, in W.
   virtual BodyState Body(int lane, int body) const = 0;
-  virtual Vec3 NodePosition(int lane, int node) const = 0;  ///< [m], in W.
-  virtual Vec3 NodeVelocity(int lane, int node) const = 0;  ///< [m/s], in W.
+  virtual Vec3 NodePosition(int lane, int node) const = 0;  ///< Position [m], in W.
+  virtual Vec3 NodeVelocity(int lane, int node) const = 0;  ///< Velocity [m/s], in W.
 };
 
 /// Observation: measured quantities of a plant at one time. The pointers refer to memory of the
@@ -130,7 +130,7 @@ class World : public Bodies {
   /// See `WorldBatch::SetNodeForce`.
   virtual void SetNodeForce(int lane, int node, const Vec3& force_n) = 0;
   virtual Vec3 NodeForce(int lane, int node) const = 0;
-  virtual double BodyMass(int lane, int body) const = 0;  ///< [kg]
+  virtual double BodyMass(int lane, int body) const = 0;  ///< Mass of a body [kg].
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Motor of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;

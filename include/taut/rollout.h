@@ -44,7 +44,7 @@ class Score {
 };
 
 struct RolloutOptions {
-  int threads = 1;  ///< 0: one per core.
+  int threads = 1;  ///< Number of threads; 0: one per core.
   std::optional<Simd> simd;
   const std::atomic<bool>* stop = nullptr;  ///< Set it to true to stop unfinished worlds.
   /// Custom controllers and sensors in addition to the experiment's. Several threads call the

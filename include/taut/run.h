@@ -95,7 +95,7 @@ struct RunSummary {
   std::vector<AnchorSummary> anchors;  ///< Only in simulations.
   std::vector<Overload> overloads;     ///< From all steps, not only recorded rows.
   std::vector<DragSummary> drags;
-  std::vector<ReferenceSpec> references;  ///< As in the experiment.
+  std::vector<ReferenceSpec> references;  ///< Reference values of the experiment.
   double system_max_tension_n = 0;        ///< Largest `tension` of any cable over the whole run.
   std::string system_max_tension_cable;
   double system_max_elastic_n = 0;

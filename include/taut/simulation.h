@@ -37,7 +37,7 @@ namespace taut {
 struct SimulationOptions {
   int worlds = 1;                               ///< Number of identical worlds.
   std::span<const RolloutWorld> variants = {};  ///< One world per variant; replaces `worlds`.
-  int threads = 1;                              ///< 0: one per core.
+  int threads = 1;                              ///< Number of threads; 0: one per core.
   std::optional<Simd> simd = {};                ///< See `WorldBatchOptions`.
   Extensions extensions = {};                   ///< Custom controllers and sensors.
   std::shared_ptr<const ContactFriction> friction = nullptr;  ///< Null: the law of the model.

@@ -99,11 +99,11 @@ struct ClockSpec {
 /// the cable lengthens.
 struct ImpedanceGains {
   int cable = 0;
-  double tension_offset_n = 0.0;         ///< T0 >= 0.
-  double length_offset_m = 0.0;          ///< L0 >= 0.
-  double position_gain_n_per_m = 0.0;    ///< K >= 0.
-  double velocity_gain_n_s_per_m = 0.0;  ///< B >= 0.
-  double velocity_offset_m_per_s = 0.0;  ///< V0.
+  double tension_offset_n = 0.0;         ///< Tension offset T0 >= 0.
+  double length_offset_m = 0.0;          ///< Length offset L0 >= 0.
+  double position_gain_n_per_m = 0.0;    ///< Position gain K >= 0.
+  double velocity_gain_n_s_per_m = 0.0;  ///< Velocity gain B >= 0.
+  double velocity_offset_m_per_s = 0.0;  ///< Velocity offset V0.
 };
 
 /// Conversion of a tension set point to a rest length command.
@@ -245,7 +245,7 @@ struct GoalSpec {
 /// 0, clipped at the saturation of the amplifier and of the converter. Defaults: Tetraspine3
 /// (Mirletz et al. 2015, eq. 7).
 struct LoadCellCounts {
-  double gain_n_per_count = 0.1567;  ///< > 0.
+  double gain_n_per_count = 0.1567;  ///< Force per count, > 0.
   double offset_n = -4.9363;         ///< Force at count 0.
   int bits = 10;                     ///< Bits of the converter, 1..32.
   int saturation_count = 741;        ///< Largest count that the amplifier reaches, >= 1.

@@ -10,7 +10,7 @@ struct ScaleSpec {
   enum class Quantity { kFriction, kMass, kStiffness, kDamping };
   Quantity quantity = Quantity::kFriction;
   std::vector<int> index;  ///< Indices of bodies or cables; empty: all.
-  double factor = 1.0;     ///< > 0.
+  double factor = 1.0;     ///< Factor on the quantity, > 0.
 };
 
 /// Noise of the start: uniform random deviations from the described start, drawn from the seed.

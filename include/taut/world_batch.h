@@ -54,7 +54,7 @@ class ContactFriction;  // taut/friction.h
 
 struct WorldBatchOptions {
   int worlds = 1;
-  int threads = 1;                ///< 0: one per core.
+  int threads = 1;                ///< Number of threads; 0: one per core.
   std::optional<Simd> simd = {};  ///< Absent: scalar for one world, else `BestSimd()`.
   /// Maximum number of linear solves per island and step. An island that needs more sets
   /// `kStatusNotConverged`.
@@ -305,12 +305,12 @@ class WorldBatch {
   void Sense(int group) const noexcept;
   int groups() const noexcept;
   BodyState Body(int world, int body) const noexcept;
-  Vec3 NodePosition(int world, int node) const noexcept;  ///< [m], in W.
-  Vec3 NodeVelocity(int world, int node) const noexcept;  ///< [m/s], in W.
+  Vec3 NodePosition(int world, int node) const noexcept;  ///< Position [m], in W.
+  Vec3 NodeVelocity(int world, int node) const noexcept;  ///< Velocity [m/s], in W.
   JointState Joint(int world, int joint) const noexcept;
   MotionState Motion(int world, int motion) const noexcept;
   Energy TotalEnergy(int world) const noexcept;
-  Vec3 Momentum(int world) const noexcept;              ///< [kg m/s], in W.
+  Vec3 Momentum(int world) const noexcept;              ///< Total momentum [kg m/s], in W.
   Vec3 AngularMomentum(int world) const noexcept;       ///< About the origin of W [kg m^2/s].
   std::vector<ContactState> Contacts(int world) const;  ///< Of the last step.
   /// Returns the overlaps in the current pose. For each pair of bodies, and for each body and

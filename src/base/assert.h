@@ -16,7 +16,7 @@ namespace taut::base {
 
 #else
 
-// unevaluated, but the condition must compile
+// The condition is not evaluated, but it must compile.
 #define TAUT_ASSERT(condition) ((void)sizeof(!(condition)))
 
 #endif

@@ -50,7 +50,8 @@ std::string Line(const Diagnostic& d, std::string_view kind) {
 std::string Shortened(std::string text) {
   constexpr std::size_t kMostBytes = 4000, kLastBytes = 1000;
   if (text.size() <= kMostBytes) return text;
-  const auto continues = [&](std::size_t i) { return (text[i] & 0xc0) == 0x80; };  // in UTF-8
+  // Returns whether byte i continues a UTF-8 character.
+  const auto continues = [&](std::size_t i) { return (text[i] & 0xc0) == 0x80; };
   std::size_t from = kMostBytes - kLastBytes, to = text.size() - kLastBytes;
   while (from > 0 && continues(from)) --from;
   while (to < text.size() && continues(to)) ++to;
@@ -89,7 +90,7 @@ std::string Printable(std::string_view text) {
       if (const unsigned mark = DirectionMark(text.substr(i)); mark != 0) {
         out += "\\u";
         for (int shift = 12; shift >= 0; shift -= 4) out += kDigits[mark >> shift & 15];
-        i += mark < 0x800 ? 1 : 2;  // bytes after the first
+        i += mark < 0x800 ? 1 : 2;  // skips the remaining bytes
         continue;
       }
       out += text[i];
@@ -147,12 +148,12 @@ std::string_view ClosestMatch(std::string_view word, const std::vector<std::stri
   constexpr std::size_t kLongest = 100;  // longest name; longer words are not misspellings
   std::string_view best;
   if (word.size() > kLongest) return best;
-  // a third of the letters may differ
+  // At most a third of the letters may differ.
   int best_distance = static_cast<int>(word.size()) / 3 + 1;
   for (const std::string& candidate : candidates) {
     const auto longer =
         static_cast<std::ptrdiff_t>(candidate.size()) - static_cast<std::ptrdiff_t>(word.size());
-    // the lengths differ too much
+    // Skip candidates with a very different length.
     if (longer > best_distance || -longer > best_distance) continue;
     const int distance = EditDistance(word, candidate);
     if (distance <= best_distance && (best.empty() || distance < best_distance)) {

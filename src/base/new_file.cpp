@@ -32,7 +32,7 @@ bool SyncFolderOf(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const int descriptor =
       open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return true;  // a folder may be writable but not readable
+  if (descriptor < 0) return true;  // the folder is writable but not readable
   const bool good = SyncDescriptor(descriptor);
   const int error = errno;
   close(descriptor);

@@ -29,7 +29,7 @@ const char* EndOfNumber(const char* begin, const char* end) {
   if (Follows(at, end, "inf")) return at + 3;
   if (Follows(at, end, "nan")) {
     at += 3;
-    // nan(...) with any letters, digits or underscores
+    // Accepts nan(...) with any letters, digits or underscores.
     if (at == end || *at != '(') return at;
     const char* close = at + 1;
     while (close != end && (IsDigit(*close) || *close == '_' ||
@@ -94,7 +94,7 @@ std::from_chars_result FromChars(const char* begin, const char* end, double& num
   if (value == 0) {
     const char* const exponent =
         std::find_if(begin, stop, [](char c) { return (c | 0x20) == 'e'; });
-    // not zero, but below the smallest double
+    // The number is not zero, but below the smallest double.
     if (std::any_of(begin, exponent, [](char c) { return c >= '1' && c <= '9'; })) {
       return {stop, std::errc::result_out_of_range};
     }

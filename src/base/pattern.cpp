@@ -36,7 +36,7 @@ std::optional<std::string_view> Wildcard(std::string_view pattern, std::string_v
     return pattern == name ? std::optional<std::string_view>("") : std::nullopt;
   }
   const std::string_view head = pattern.substr(0, star), tail = pattern.substr(star + 1);
-  // at least one character, so that "*_x_m" needs a name before "_x_m"
+  // `*` matches at least one character, so that "*_x_m" needs a name before "_x_m".
   if (name.size() <= head.size() + tail.size() || !name.starts_with(head) ||
       !name.ends_with(tail)) {
     return std::nullopt;

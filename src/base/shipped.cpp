@@ -57,7 +57,7 @@ std::string FindInput(const std::string& path, const std::string& program) {
   std::error_code failed;
   const fs::path given(path);
   if (path.empty() || given.is_absolute() || fs::exists(given, failed)) return path;
-  // it would be outside of the folder
+  // A path that begins with ".." would leave the folder.
   if (*given.lexically_normal().begin() == "..") return path;
   const auto shipped = ShippedFolder(program);
   if (!shipped) return path;
@@ -69,7 +69,7 @@ std::string FindInput(const std::string& path, const std::string& program) {
 }
 
 std::string SimilarInput(const std::string& path, const std::string& program) {
-  constexpr std::size_t kMostFiles = 2000;  // per folder
+  constexpr std::size_t kMostFiles = 2000;  // maximum number of files read per folder
   const fs::path given(path), parent = given.parent_path();
   std::vector<std::string> names, paths;
   if (!given.has_stem()) return {};

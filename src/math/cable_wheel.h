@@ -13,7 +13,7 @@ template <class V>
 struct Wheel {
   using S = decltype(V::x);
   V center, axis;  ///< In the frame of the path; the axis is a unit vector.
-  S radius;        ///< [m]
+  S radius;        ///< Radius to the center line of the cable [m].
   S before;        ///< `angle` in the previous step; it changes by at most half a turn.
   /// Index of the path point where the cable reaches the wheel; it leaves at the next point.
   int at;

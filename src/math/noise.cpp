@@ -7,7 +7,7 @@
 namespace taut::math {
 namespace {
 
-constexpr std::uint32_t kStream = 0x6e6f6973;  // unique among the random streams
+constexpr std::uint32_t kStream = 0x6e6f6973;  // differs from all other random streams
 
 double AtCorner(std::uint64_t seed, std::int64_t x, std::int64_t y) noexcept {
   const auto place = static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32 |

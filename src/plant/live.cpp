@@ -126,7 +126,7 @@ class Live final : public LiveRun {
   }
 
   void Watch() {
-    if (watch_.empty()) return;  // avoids the observation, which costs more than the check
+    if (watch_.empty()) return;  // saves the observation, which is expensive
     watch_.Take(time_s(), simulation_->Observe(), world());
   }
 

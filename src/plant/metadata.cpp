@@ -26,7 +26,7 @@ std::string MachineName() {
   utsname name{};
   if (uname(&name) != 0) return ProcessorName();
   const std::string system = std::string(name.sysname) + " " + name.release + " " + name.machine;
-  const std::string processor = ProcessorName();  // Linux on AArch64 reports none
+  const std::string processor = ProcessorName();  // empty on Linux for AArch64
   return processor.empty() ? system : system + ", " + processor;
 }
 

@@ -29,7 +29,7 @@ Unsettled NoteUnsettled(WorldBatch& batch, double step_s) {
     before.elastic_n.push_back(batch.Cable(kTheWorld, static_cast<int>(c)).elastic_n);
   }
   const std::vector<std::uint8_t> as_described = batch.Save(kTheWorld);
-  batch.Step(step_s);  // contacts are detected in a step only
+  batch.Step(step_s);  // only a step detects contacts
   for (const ContactState& contact : batch.Contacts(kTheWorld)) {
     before.touching.insert(PairOf(contact));
   }

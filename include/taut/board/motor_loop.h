@@ -59,20 +59,20 @@ inline LoopNumbers NumbersOf(const float* p) noexcept {
 
 /// State of the control loop of one motor.
 struct MotorLoop {
-  // measured
+  // Measured values.
   uint16_t encoder = 0;         ///< Last reading, modulo 2^16.
   int16_t step = 0;             ///< Encoder counts since the previous tick.
   int32_t counts = 0;           ///< Relative to the reference position; winding in is positive.
   float tension_counts = 0.0f;  ///< Filtered load cell reading [ADC counts].
-  // only for impedance control; other modes skip its computation
+  // Values for impedance control only; other modes do not compute them.
   float counts_per_tick = 0.0f;  ///< Filtered encoder rate.
   float tension_n = 0.0f, rest_length_m = 0.0f, length_m = 0.0f, rate_m_per_s = 0.0f;
-  // commanded
+  // Commanded values.
   int32_t target_counts = 0;
   float velocity_input_m_per_s = 0.0f;  ///< V0 of impedance control.
   float drive_input = 0.0f;
   control::Impedance<float> gains{};  ///< Effective gains; they follow the parameters slowly.
-  // results
+  // Results of the control law.
   control::PidState<float> pid{};
   float set_point_n = 0.0f;
   float drive = 0.0f;  ///< PWM steps; winding in is positive.
@@ -149,7 +149,7 @@ inline void FindSetPoint(MotorLoop& motor) noexcept {
 /// higher tension decreases to the upper limit of T0.
 inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
                            MotorLoop& motor) noexcept {
-  motor.counts_per_tick = 0.0f;  // otherwise one count of a holding motor would count as 13 mm/s
+  motor.counts_per_tick = 0.0f;  // one count while holding would read as 13 mm/s
   SenseCable(p, numbers, motor);
   if (capture) {
     const Range range = MotorRange(kTensionOffset);

@@ -57,7 +57,7 @@ struct Board {
   uint8_t faults[kMotors] = {0, 0};
   uint8_t board_faults = 0;
 
-  // bus
+  // State of the bus.
   bool heard = false;        ///< At least one broadcast was received since the start.
   bool command_due = false;  ///< The next tick applies `command`.
   bool reply_due = false;    ///< The next read returns `reply`.
@@ -70,7 +70,7 @@ struct Board {
   Counters counters;
   Memory memory = Memory::kIdle;
 
-  // monitoring
+  // State of the monitoring.
   Watch watches[kMotors];
   WatchLimits limits[kMotors];
   HeatNumbers heat[kMotors];

@@ -122,7 +122,7 @@ inline void React(bool driver_fault, Board& board) noexcept {
     if (board.parameters.board[kOnTimeout] >= 0.5f) {
       Enter(Mode::kOff, false, board);
       board.armed = false;
-      return;  // otherwise an additional fault would start holding
+      return;  // so that a further fault does not start kHold
     }
     if (board.mode != Mode::kImpedance && board.mode != Mode::kHold) {
       Enter(Mode::kHold, false, board);  // impedance control continues with V0 = 0

@@ -15,7 +15,7 @@ namespace control {
 /// class, since a float cannot resolve milliseconds after four and a half hours.
 template <class Time>
 struct Clock {
-  Time period_s;  ///< > 0.
+  Time period_s;  ///< Time between ticks, > 0.
   Time phase_s;   ///< Time of tick 0.
 };
 

@@ -46,7 +46,7 @@ constexpr PidState<Real> StartPidFrom(const Pid<Real>& pid, Real error, Real out
   const Real zero = Literal<Real>(0.0f), one = Literal<Real>(1.0f);
   const Real sum = output - pid.proportional * error;
   const auto can = pid.integral > Literal<Real>(1e-20f);
-  // minus the increment in the first tick
+  // The first tick adds error * period_s to the integral.
   const Real integral = sum / Select(can, pid.integral, one) - error * period_s;
   return PidState<Real>{error, Select(can, integral, zero)};
 }
@@ -62,7 +62,7 @@ constexpr Real StepPid(const Pid<Real>& pid, PidState<Real>& state, Real error,
   const Real before = state.error_before;
   state.error_before = error;
   const Real u = pid.proportional * error + pid.integral * state.integral;
-  // a gain of 0 saves a board the time of a division
+  // Without a derivative gain, a board saves the time of a division.
   const Real zero = Literal<Real>(0.0f);
   if (!Any((pid.derivative > zero) | (pid.derivative < zero))) return u;
   return u + pid.derivative * ((error - before) / period_s);
@@ -88,7 +88,7 @@ constexpr Real StepPidLimited(const Pid<Real>& pid, PidState<Real>& state, Real 
   const Real integral_before = state.integral;
   const Real u = StepPid(pid, state, error, period_s);
   if (windup == Windup::kAllowed) return Clamp(u, limits.low, limits.high);
-  if (!Any((u > limits.high) | (u < limits.low))) return u;  // the rest would change nothing
+  if (!Any((u > limits.high) | (u < limits.low))) return u;  // no limit applies
 
   const Real zero = Literal<Real>(0.0f);
   const Real push = pid.integral * (state.integral - integral_before);

@@ -27,7 +27,7 @@ namespace taut::link {
 enum class OnFault { kHold, kOff, kStop };
 
 struct DriverOptions {
-  int motors = board::kCables;  ///< 1 .. 12.
+  int motors = board::kCables;  ///< Number of motors, 1 .. 12.
   double period_s = 0.01;       ///< Period of cycles. Boards time out after 0.1 s.
   double patience_s = 0.04;     ///< Timeout for replies during cycles.
   int lost_after = 3;           ///< Number of cycles without a frame until a board counts as lost.

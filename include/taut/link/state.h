@@ -26,7 +26,7 @@ struct MotorView {
   std::int64_t encoder_counts = 0;  ///< Relative to the reference position.
   double rest_length_m = 0;         ///< From the encoder count.
   double length_m = 0;      ///< Rest length plus the extension of the spring by the tension.
-  double duty = 0;          ///< -1 .. 1; positive winds in.
+  double duty = 0;          ///< Duty of the motor, -1 .. 1; positive winds in.
   std::uint8_t faults = 0;  ///< `board::MotorFault` bits.
   int temperature_c = 0;    ///< Winding temperature, computed by the board.
 };

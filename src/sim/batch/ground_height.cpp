@@ -46,7 +46,7 @@ double TopOf(const SurfaceTable& surface, double x, double y) {
   const auto look = [&](const SurfaceTriangle& t) noexcept {
     const Vec3 &a = t.p[0], &b = t.p[1], &c = t.p[2];
     const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    if (area == 0) return;  // vertical: its edges also belong to other triangles
+    if (area == 0) return;  // vertical triangle: others share its edges
     const double u = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
     const double v = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
     constexpr double kRounding = 1e-12;  // a line through an edge must hit one of its triangles

@@ -37,8 +37,8 @@ JointState WorldBatch::Joint(int world, int joint) const noexcept {
   };
   const Side a = side(j.a, j.own_a_P, j.axes_a_P), b = side(j.b, j.own_b_P, j.axes_b_P);
   const Vec3 gap = b.point_m - a.point_m, spin = b.spin_rad_per_s - a.spin_rad_per_s;
-  const Vec3 apart =
-      b.velocity_m_per_s - a.velocity_m_per_s - Cross(a.spin_rad_per_s, gap);  // relative to a
+  // Velocity of b's point relative to a's point, in the rotating frame of a.
+  const Vec3 apart = b.velocity_m_per_s - a.velocity_m_per_s - Cross(a.spin_rad_per_s, gap);
   JointState out;
   out.force_n = d.vec(world, d.layout.joint_force + 3 * joint);
   out.torque_n_m = d.vec(world, d.layout.joint_torque + 3 * joint);

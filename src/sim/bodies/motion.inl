@@ -8,7 +8,7 @@ namespace taut::sim {
 
 template <class W>
 void PutPlace(const Rows<W>& s, int body, const Motion<W>& at) noexcept {
-  const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
+  const W zero = W::Splat(0.0);  // adding +0: see StageDriftSecond
   s.pos[body] = at.pos + V3<W>{zero, zero, zero};
   s.quat[body] = {at.quat.w + zero, at.quat.x + zero, at.quat.y + zero, at.quat.z + zero};
 }

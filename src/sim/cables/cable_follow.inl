@@ -65,7 +65,7 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
     const bool within = Abs(Dot(middle, PlaceOf(wheels[k].axis, lane))) < bends.Half(k) &&
                         Abs(wheels[k].angle[lane]) < bends.Most(k);
     if (lies && within) continue;
-    drop(k, lies);  // with contact: the cable is inside the obstacle that it slips off
+    drop(k, lies);  // the cable slips off and is inside the obstacle
   }
   if (bends.count() < before) return true;
   const int weaker = BendToLetGo(m, s, work, touch, used, before, lane);
@@ -218,7 +218,7 @@ template <class W>
   auto look = (!free) | MayTouchRods(m, s, work, touch, first, last, free);
   if (touch.terrain) look = look | MayTouch(s, cable.touch, first, last);
   look = look & (s.halted[0] == W::Splat(0.0));
-  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;  // without bends
+  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;  // a cable without bends
   const W* const now = nullptr;
   LayThen(m, s, work, touch, used, start, end, now);
   const auto busy = look & MayChangeBends(m, s, work, touch, used);

@@ -71,7 +71,7 @@ void LoadSupplies(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexce
   for (int i = 0; i < m.supply_count; ++i) {
     const SupplyTable& supply = m.supplies[i];
     const W open = W::Splat(supply.voltage_v), sags = W::Splat(supply.resistance_ohm);
-    // supply current: per volt, sum of duty^2 / R; from back EMF, sum of duty k w / R
+    // Supply current: sum of duty^2 / R per volt, and sum of duty k w / R from back EMF.
     W per_volt = zero, back = zero;
     for (int j = 0; j < m.motor_count; ++j) {
       const MotorTable& t = m.motors[j];

@@ -77,7 +77,7 @@ TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, 
   row.SetLaw(z - (rate - wound), z - wound, spring, half_h * damping, wound + wound);
   row.upper = W::Splat(1e300);
   if (!cable.clamped_damping) return;
-  // twice the spring part, predicted with the rate before the step
+  // Twice the spring part of the impulse, predicted with the rate before the step.
   const W twice = row.SpringImpulse(row.start + W::Splat(2.0) * (rate - wound));
   row.upper = Select(damping > W::Splat(0.0), twice + twice, row.upper);
 }

@@ -68,7 +68,7 @@ TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scra
   const W at_other = Dot(Cross(apart, rod.axis), across) * inverse;
   const auto within =
       parallel | ((Abs(at_rod) < bend->half - reach) & (Abs(at_other) < next->half - reach));
-  // rotation axes for which the cable turns counterclockwise
+  // Returns the axis about which the cable turns counterclockwise.
   const auto turn = [&](const Wheel<V3<W>>& x) {
     return Select(x.angle < zero, zero - one, one) * x.axis;
   };

@@ -138,7 +138,7 @@ void CoupleCables(Tables& tables) {
   std::vector<SparseRow> matrix(n);
   tables.coupling.assign(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    std::vector<std::size_t> others;  // only cables on a common body are coupled
+    std::vector<std::size_t> others;  // cables on a common body
     for (const Pull& pull : pulls[i]) {
       const auto& here = cables_at[static_cast<std::size_t>(pull.body)];
       others.insert(others.end(), here.begin(), here.end());

@@ -193,7 +193,7 @@ void LayOutTouchRods(Tables& t) {
 }
 
 void LayOutChainLinks(Tables& t) {
-  constexpr int kMostLinksOfSpan = 16;  // two in each of eight lanes
+  constexpr int kMostLinksOfSpan = 16;  // two links in each of eight lanes
   for (CableTable& cable : t.cables) {
     if (cable.span_count == 0) continue;
     cable.first_link = t.chain_link_count;

@@ -96,7 +96,7 @@ class PairCompiler {
   /// Lists the shapes of bodies that may touch each other, and the bodies that cannot collide with
   /// each of them.
   void Rows() {
-    std::vector<int> led;  // kinematic bodies do not touch each other
+    std::vector<int> led;  // kinematic bodies, which do not touch each other
     for (int body = 0; body < t_.body_count; ++body) {
       t_.first_shape.push_back(static_cast<int>(t_.body_shapes.size()));
       if (!Collides(body) || ShapesOf(body) == 0) continue;

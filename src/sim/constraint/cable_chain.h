@@ -29,11 +29,11 @@ TAUT_INLINE void Push(const RowLink<Num>& link, const Num* l, V3<Num>& v, V3<Num
 /// / 4 u. Mean rate of its length: `rate` - u / 2.
 template <class Num>
 struct ChainSpan {
-  Num stretch, rate;  ///< [m], [m/s]
+  Num stretch, rate;  ///< See above; units [m], [m/s].
   /// Increase of the tension per stretch, and its decrease per rest length that slips into the span
   /// [N/m].
   Num stiffness, slip_stiffness;
-  Num damping;  ///< [N s/m]
+  Num damping;  ///< Damping coefficient [N s/m].
   Num ratio;    ///< Tension ratio at the slip point after the span: exp(mu theta).
   Num l;        ///< Impulse [N s].
 };

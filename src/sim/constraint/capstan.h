@@ -18,8 +18,8 @@ inline constexpr int kMostSpans = 16;
 /// takes any larger x.
 ///   x = min(a - p T, e - q T)   while T > 0
 struct CapstanSpan {
-  double a, e;  ///< [m]
-  double p, q;  ///< > 0 [m/N]
+  double a, e;  ///< Coefficients a, e [m].
+  double p, q;  ///< Coefficients p, q > 0 [m/N].
 };
 
 /// `Tag`: type that differs between instruction sets, so that each set has a separate
@@ -31,14 +31,14 @@ struct Capstan {
   double ratio[kMostSpans];  ///< >= 1, per slip point: point i is after span i.
 
   // Results:
-  double tension[kMostSpans];  ///< [N]
+  double tension[kMostSpans];  ///< Tension of each span [N].
   double slip[kMostSpans];     ///< Rest length that slips from span i to span i + 1 [m].
   double weight[kMostSpans];   ///< Tension ratios within a group of spans that slip together.
   /// Decrease of rest length per T of all spans that slip together with i.
   double slope[kMostSpans];
   int first[kMostSpans];   ///< First span of the group that slips together with i.
   bool upper[kMostSpans];  ///< The span is on the branch x = e - q T.
-  int way[kMostSpans];     ///< 1: T' = c T, -1: T = c T', 0: it sticks.
+  int way[kMostSpans];     ///< 1: T' = c T, -1: T = c T', 0: the point sticks.
 
   void Solve() noexcept {
     for (int i = 0; i + 1 < count; ++i) way[i] = ratio[i] > 1.0 ? 0 : 1;

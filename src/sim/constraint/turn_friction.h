@@ -46,7 +46,7 @@ struct TurnFriction {
     return Reach(u, center, inv_w / e, out);
   }
   void ProjectFrozen(const Num* u, const Num* center, Num e, const Num*, Num* out) const noexcept {
-    Project(u, center, e, out);  // already convex
+    Project(u, center, e, out);  // the projection is already convex
   }
   void Derivative(const Branch& b, Num e, Num* g) const noexcept {
     Across(b, b.shrink * (inv_w / e), g);

@@ -77,7 +77,7 @@ bool EachNearPair(const View& m, const Rows<W>& s, Scratch<W>& work, W reach_m,
       const TreeNode* const tree = work.near_tree + 2 * n * lane;
       MarkNear(tree, tree[0].next, SphereBounds(m, s, a, lane), reach_m[lane], work.near_marks);
     }
-    work.near_marks[i / 64] &= ~(~uint64_t{0} >> (63 - i % 64));  // later bodies only
+    work.near_marks[i / 64] &= ~(~uint64_t{0} >> (63 - i % 64));  // keeps later bodies only
     for (int w = i / 64; w < words; ++w) {
       for (; work.near_marks[w] != 0; work.near_marks[w] &= work.near_marks[w] - 1) {
         const int b = m.colliders[64 * w + __builtin_ctzll(work.near_marks[w])];

@@ -101,7 +101,7 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
   const V3<W>& x = s.pos[body];
   Found<W> found;
   found.key = W::Splat(pair.id + static_cast<uint32_t>(t.feature));
-  found.frame = W::Splat(-1.0) - found.key;  // unique
+  found.frame = W::Splat(-1.0) - found.key;  // a unique frame
   found.gap = W::Splat(t.gap_m);
   found.radius = W::Splat(RadiusOf(m.shapes[pair.a].shape_P));
   found.static_friction = W::Splat(pair.static_friction);

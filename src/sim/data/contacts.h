@@ -31,7 +31,7 @@ struct Contact : ContactPoint<Num, kLinks> {
 /// Data of a contact for the next step: force for the warm start, and whether it slid.
 template <class Num>
 struct ContactMemory {
-  V3<Num> force;  ///< [N]; 0 without contact force.
+  V3<Num> force;  ///< Contact force [N]; 0 if there is none.
   Num slip;
 
   static ContactMemory None() noexcept {

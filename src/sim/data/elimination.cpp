@@ -46,7 +46,7 @@ bool Eliminate(BodyGraph& graph, int block_capacity, int* order, int* place,
       const int degree = BitsIn(graph.Row(i), words);
       if (degree < least) best = i, least = degree;
     }
-    TAUT_ASSERT(best >= 0);  // a degree is below n
+    TAUT_ASSERT(best >= 0);  // degrees are below n
     order[k] = best;
     place[best] = k;
     lower += least;

@@ -22,7 +22,7 @@ struct ImplicitBody {
   Num share;           ///< Fraction of `force` and `torque` that acts within the stage.
   Num ahead, behind;   ///< Velocity at the end = ahead * unknown + behind * velocity at the start.
   V3<Num> half;        ///< Cayley vector of half the rotation in the stage.
-  Num scale;           ///< 1 / (1 + half^2)
+  Num scale;           ///< Factor 1 / (1 + half^2).
   simd::M3<Num> undo;  ///< (1 - [half])^-1, as a matrix.
   V3<Num> x1, y, L1;   ///< At the end of the stage; y: L1 before the rotation.
 };

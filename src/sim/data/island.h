@@ -54,7 +54,7 @@ inline bool Stays(double now, double before, double bound) noexcept {
 template <class Num>
 struct Unknown {
   int body;          ///< Index in the world.
-  int size = kDofs;  ///< 6, 3 or 1 velocities.
+  int size = kDofs;  ///< Number of velocities: 6, 3 or 1.
   Num mass, inv_mass;
   S3<Num> inertia, inv_inertia;  ///< In W.
   Twist<Num> free;               ///< Velocities without the constraints of the island.
@@ -123,10 +123,10 @@ struct ImpactRows {
 /// Vectors and matrices for the stages of an island's solve.
 template <class Num>
 struct IslandMemory {
-  Row<Num> v, rhs, direction, trial_v;             ///< 6 per unknown.
-  Row<Num> l, u, best, center, projected, du, u2;  ///< 1 per row.
+  Row<Num> v, rhs, direction, trial_v;             ///< Vectors with 6 numbers per unknown.
+  Row<Num> l, u, best, center, projected, du, u2;  ///< Vectors with one number per row.
   Row<Num> g, f;                                   ///< Per constraint: rows^2 (g), rows (f).
-  Row<Num> blocks;                                 ///< 36 per block.
+  Row<Num> blocks;                                 ///< Matrix blocks, 36 numbers each.
   ImpactRows<Num> impacts;
 };
 

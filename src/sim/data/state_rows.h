@@ -60,7 +60,7 @@ template <class Num>
 struct MotorOrders {
   Num duty;     ///< Commanded duty [1].
   Num by_duty;  ///< 1: use the commanded duty; 0: follow the target of the cable.
-  Num on;       ///< 0: the driver is off.
+  Num on;       ///< 1: the driver is on; 0: it is off.
 };
 
 /// Bend: contact of a cable with a terrain edge or rod (cable_wrapping.inl).

@@ -107,7 +107,8 @@ void LayOutFloor(Tables& t) {
     t.floor_m = std::min(t.floor_m, surface.table().low.z);
   }
   for (const TerrainBoxDef& box : def.terrain_boxes) {
-    const Vec3& h = box.half_extents_m;  // lower bound of all corners
+    // The bounding sphere of the box gives a lower bound of all corners.
+    const Vec3& h = box.half_extents_m;
     t.floor_m = std::min(t.floor_m, box.center_m.z - std::sqrt(h.x * h.x + h.y * h.y + h.z * h.z));
   }
 }

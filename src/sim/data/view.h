@@ -91,7 +91,7 @@ struct FrictionSide {
   bool by_slip = false;  ///< Friction is not given by two constant coefficients.
   double at_rest = 0, sliding = 0;
   double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/m^2], or 0.
-  double viscous = 0;        ///< [s/m]
+  double viscous = 0;        ///< Increase of the coefficient with speed [s/m].
   double forward = 1, backward = 1, sideways = 1;
   double axis_P[3] = {};  ///< Unit vector, if directed.
 };

@@ -67,7 +67,7 @@ class ManyTouches {
   };
 
   void Choose() noexcept {
-    // stable sort by gap
+    // Sorts the points by gap; the sort is stable.
     for (int i = 1; i < count_; ++i) {
       for (int k = i; k > 0 && all_[k].gap_m < all_[k - 1].gap_m; --k) {
         const One swapped = all_[k];
@@ -80,7 +80,7 @@ class ManyTouches {
     while (all_[nearer].gap_m < last_m - same_m) ++nearer;
     while (end < count_ && all_[end].gap_m <= last_m + same_m) ++end;
     count_ = nearer;
-    // directions: corners of an icosahedron
+    // The twelve directions are the corners of an icosahedron.
     constexpr double kGolden = 1.618033988749895;
     for (int axis = 0; axis < 3; ++axis) {
       for (int signs = 0; signs < 4; ++signs) {

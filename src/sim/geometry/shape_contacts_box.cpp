@@ -95,7 +95,7 @@ struct Polygon {
   Corner corners[kMax];
   int count = 0;
   void Add(const Corner& corner) noexcept {
-    // rounding may make a convex outline slightly concave
+    // Rounding may make a convex outline slightly concave and add corners.
     if (count < kMax) corners[count++] = corner;
   }
 };

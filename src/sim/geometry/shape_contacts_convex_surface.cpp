@@ -175,13 +175,13 @@ class ConvexSearch {
       const Vec3 normal = NormalOf(s, t);
       const double gap_m = Dot(normal, p - t.p[0]);
       if (!(gap_m < limit_m_) || !(Dot(normal, center_ - t.p[0]) > 0.0)) return;
-      // at most a right angle, as at the corner
+      // The normals must enclose at most a right angle, as at the corner.
       if (!(Dot(first.normal, normal) > -kLevel)) return;
       const Vec3 down = base - t.p[0];
       if (&s == &s_) {
         const Vec3 middle = (1.0 / 3.0) * (t.p[0] + t.p[1] + t.p[2]) - base;
         if (!(Dot(first.normal, middle) > kLevel * Norm(middle))) return;
-      } else {  // covered by this surface, it may continue below
+      } else {  // another piece, which may continue below s_
         double most_m = -1.0;
         for (const Vec3& corner : t.p) {
           const Vec3 way = corner - base;

@@ -22,7 +22,7 @@ struct FaceAxis {
 FaceAxis BestFace(const Convex& a, const Convex& b) noexcept {
   FaceAxis best;
   for (int face = 0; face < a.table->face_count; ++face) {
-    // no corner is lower than the center minus thin_m
+    // Skips faces that cannot be better: some corner is lower than the center by thin_m or more.
     if (a.Above(face, b.center) - b.thin_m <= best.apart_m) continue;
     const double apart = b.Lowest(a.normals[face], a.offsets_m[face]);
     if (apart > best.apart_m) best = {face, apart};
@@ -123,7 +123,7 @@ struct Polygon {
   Corner corners[kMax];
   int count = 0;
   void Add(const Corner& corner) noexcept {
-    // rounding may make a convex outline slightly concave
+    // Rounding may make a convex outline slightly concave and add corners.
     if (count < kMax) corners[count++] = corner;
   }
 };

@@ -77,7 +77,7 @@ class RoundSearch {
     const Vec3 start = convex_.FromOf(edge), side = convex_.AlongOf(edge);
     const Vec3 c = Cross(along_, side), between = start - from_;
     const double c2 = Dot(c, c);
-    if (!(c2 > 0.0)) return;  // an end is as near
+    if (!(c2 > 0.0)) return;  // parallel: an end is as near
     const double on_edge = Clamp(Dot(Cross(between, along_), c) / c2, 0.0, 1.0);
     const Vec3 place = start + on_edge * side;
     const double t = Dot(place - from_, along_) / (length_m_ * length_m_);
@@ -104,7 +104,7 @@ class RoundSearch {
     LineStretch beside{0.0, 1.0};
     beside.CutAbove(-Dot(to_line, side), -Dot(along_, side));
     beside.CutAbove(Dot(to_line, side) - Dot(side, side), Dot(along_, side));
-    // in the plane of each face, into the face
+    // Vectors in the plane of each face, pointing into the face.
     const Vec3 left = Cross(convex_.normals[edge.left], side);
     const Vec3 right = Cross(side, convex_.normals[edge.right]);
     beside.CutAbove(Dot(to_line, left), Dot(along_, left));

@@ -113,7 +113,7 @@ Surface::Surface(const TerrainMeshDef& mesh) : corners_(mesh.corners_m) {
       high[axis] = CellAt(std::max({at(v[0]), at(v[1]), at(v[2])}), t.buckets[axis]);
     }
   };
-  // in doubles, because the sum may exceed an int by far
+  // The sum is a double, because it may exceed an int by far.
   const auto entries = [&] {
     double sum = 0;
     for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {

@@ -36,8 +36,8 @@ class LineSearch {
     const Vec3 edge = end - start, a = from_ - start, c = Cross(along_, edge);
     const double edge2 = Dot(edge, edge), c2 = Dot(c, c), apart = Dot(a, c);
     if (!(c2 > kParallel * along2_ * edge2)) return;
-    if (apart * apart > limit_m_ * limit_m_ * c2) return;  // distance of the two infinite lines
-    // within the length of the edge, and outside of all its triangles
+    if (apart * apart > limit_m_ * limit_m_ * c2) return;  // the infinite lines are too far apart
+    // Keep the part within the length of the edge and outside of all its triangles.
     LineStretch outside = reach_;
     const double from_edge = Dot(a, edge), along_edge = Dot(along_, edge);
     outside.CutAbove(-from_edge, -along_edge);
@@ -136,7 +136,7 @@ class LineSearch {
       return;
     }
     if (count_ == most_) {
-      // remove the farthest
+      // Remove the farthest contact.
       int farthest = 0;
       for (int i = 1; i < count_; ++i) {
         if (out_[i].place.distance_m > out_[farthest].place.distance_m) farthest = i;

@@ -334,7 +334,7 @@ int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, Surf
   if (above && known != nullptr && known->count == 0) return 0;
   PlaceSearch search(s, middle, point, limit_m, out, most);
   if (s.is_field && !above) {
-    // inside: the depth limits the search
+    // Inside the field, the depth limits the search.
     const double depth = DepthBelow(s, point);
     if (depth > 0.0) return WayOutOfField(s, point, limit_m, depth, middle, out) ? 1 : 0;
     if (PlaceOnWall(s, point, limit_m, middle, out)) search.Add(SurfacePlace(*out));

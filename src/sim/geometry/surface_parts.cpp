@@ -80,7 +80,7 @@ class LineFilter {
     beside.CutAbove(-from_edge - slack, -along_edge);
     beside.CutAbove(from_edge - edge2 - slack, along_edge);
     if (beside.low > beside.high) return false;
-    // smallest distance from the infinite line of the edge on a segment
+    // Returns whether a segment comes near enough to the infinite line of the edge.
     const Vec3 apart = a - (from_edge / edge2) * edge;
     const Vec3 parting = along_ - (along_edge / edge2) * edge;
     const auto in_reach = [&](const LineStretch& stretch) noexcept {

@@ -21,7 +21,7 @@ constexpr int kEdgesOfSharpCorner = 3;
 /// counterclockwise.
 int Falls(const Vec3& from, const Vec3& to, const Vec3& apex, const Vec3& other) {
   const Vec3 along = to - from, n = Cross(along, apex - from), m = Cross(along, other - from);
-  // sine of the angle times the lengths of n and m, divided by the length of the edge
+  // Sine of the angle times the lengths of n and m, divided by the length of the edge.
   const double sine = -Dot(n, other - from);
   if (sine * sine * Dot(along, along) <= kStraight * kStraight * Dot(n, n) * Dot(m, m)) return 0;
   return sine > 0.0 ? 1 : -1;
@@ -29,7 +29,7 @@ int Falls(const Vec3& from, const Vec3& to, const Vec3& apex, const Vec3& other)
 
 bool IsSharp(const SurfaceEdge& edge) {
   if (edge.border) return true;
-  // counterclockwise seen from above
+  // Order the corners counterclockwise, seen from above.
   const Vec3 up = Cross(edge.to - edge.from, edge.apex[0] - edge.from);
   return (up.z < 0.0 ? Falls(edge.to, edge.from, edge.apex[0], edge.apex[1])
                      : Falls(edge.from, edge.to, edge.apex[0], edge.apex[1])) > 0;

@@ -257,7 +257,7 @@ template <class UseEdge, class UseCorner>
 void EachSharpWithin(const SurfaceTable& s, const Vec3& low, const Vec3& high,
                      const UseEdge& use_edge, const UseCorner& use_corner) noexcept {
   if (!s.is_field) return detail::EachSharpOfBounds(s, low, high, use_edge, use_corner);
-  // one cell more, because an edge belongs to its first corner
+  // Visit one cell more, because an edge belongs to its first corner.
   const int i0 = CellAt((low.x - s.low.x) * s.inv_cell - 1.0, s.columns);
   const int i1 = CellAt((high.x - s.low.x) * s.inv_cell, s.columns);
   const int j0 = CellAt((low.y - s.low.y) * s.inv_cell - 1.0, s.rows);

@@ -141,7 +141,7 @@ void TurnJointedBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexce
 template <class W, class F>
 void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
                MaskOf<W> in_lanes, const F& closed) noexcept {
-  const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
+  const W zero = W::Splat(0.0);  // adding +0: see StageDriftSecond
   const V3<W> none{zero, zero, zero};
   system.Solve([&](int r) { return system.gap(r); });
   for (int k = 0; k < m.joint_body_count; ++k) {

@@ -114,7 +114,7 @@ void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
   const W before = RateOf(place, d, Before(a), Before(b)), speed = Abs(before);
   const W free = RateOf(place, d, Free(a), Free(b)), gap = d.value;
   const W bend = BendOf(work, j, table, place, d, angle, half * h);
-  // distance between chord and arc at the middle of the step (sagitta)
+  // Sagitta: distance between chord and arc at the middle of the step.
   const W sagitta = W::Splat(0.25) * h * bend, off = gap - sagitta;
   row.reach = h * (speed + Abs(free)) + W::Splat(kContactMarginM);
   row.live = Select(gap < row.reach, row.live, zero);

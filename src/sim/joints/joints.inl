@@ -10,7 +10,7 @@ namespace taut::sim {
 /// bodies.
 template <class W>
 struct JointPlace {
-  V3<W> own_a, own_b;  ///< [m]
+  V3<W> own_a, own_b;  ///< Joint points of a and b [m].
   V3<W> gap;           ///< From a's point to b's point [m].
   M3<W> axes_a, axes_b;
 

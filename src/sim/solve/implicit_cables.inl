@@ -217,7 +217,7 @@ class ImplicitCables {
       const S3<Num>& I = b.inertia;
       M3<Num> spin{{I.xx, I.xy, I.xz}, {I.xy, I.yy, I.yz}, {I.xz, I.yz, I.zz}};
       if (b.turns) {
-        // rotated columns of I, and their derivatives with respect to the rotation
+        // Rotated columns of I, and their derivatives with respect to the rotation.
         const auto column = [&](const V3<Num>& i) { return CayleyTurn(b.half, b.scale, i); };
         const V3<Num> c0 = column(spin.r0), c1 = column(spin.r1), c2 = column(spin.r2);
         spin = {{c0.x, c1.x, c2.x}, {c0.y, c1.y, c2.y}, {c0.z, c1.z, c2.z}};
@@ -335,7 +335,7 @@ class ImplicitCables {
     for (int i = 0; i < count; ++i) {
       if (p[i].body < 0) continue;
       const V3<Num> g = Along(p, count, i, &ImplicitPoint<Num>::u);
-      // derivative of the rotating lever arm
+      // Adds the derivative of the rotating lever arm.
       const Num f = stage.at_end ? pull : half * pull;
       matrix.AddSpins(p[i].body, p[i].body, CrossTimes(f * g, p[i].turn));
       for (int j = 0; count > 2 && j < count; ++j) {

@@ -228,7 +228,7 @@ class ImplicitIsland {
       island_.m.l[i] = mem_.start[i];
     }
     if (island_.rows == 0) return;
-    // from the middle of the step, where gaps are measured, to its start
+    // Move the biases from the middle of the step, where gaps are measured, to its start.
     MeasureBefore();
     const Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
     for (int i = 0; i < contacts.count; ++i) {
@@ -334,7 +334,7 @@ class ImplicitIsland {
   void Impacts() noexcept {
     const auto hit = SolveImpacts<Num>(*this, island_.rows, MaskOf<Num>::Splat(true));
     if (!Any(hit) || (good_ && laws_.residual <= target_.tolerance)) return;
-    // friction prevents these rebounds
+    // Friction prevents these rebounds: restore the impulses without rebounds.
     for (int i = 0; i < island_.rows; ++i) island_.m.l[i] = island_.m.impacts.l[i];
     good_ = true;
     Update();

@@ -137,7 +137,7 @@ class ImplicitJoints {
       ImplicitJoint<Num>& j = mem_.joints[i];
       ImplicitPoint<Num>&a = j.a, &b = j.b;
       SetTurn(stage, a), SetTurn(stage, b);
-      // rotating lever arms
+      // Adds the derivative of a rotating lever arm.
       const auto on_arm = [&](const ImplicitPoint<Num>& p, const V3<Num>& push) {
         if (p.body < 0) return;
         matrix.AddSpins(p.body, p.body, CrossTimes(share * push, p.turn));

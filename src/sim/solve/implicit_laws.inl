@@ -166,7 +166,7 @@ class ImplicitLaws {
         if (at >= first) mem_.l[at + r] = m.l[row + r];
       }
     });
-    // y: velocities without impulses
+    // Now y contains the velocities without impulses.
     if (first == 0) return;
     for (int a = 0; a < count_; ++a) {
       Num sum = zero;

@@ -176,7 +176,7 @@ class LaneSolve {
     }
     for (int b = 0; b < m_.body_count; ++b) mem_.local[b] = 0;
     for (int b = 0; b < m_.body_count; ++b) {
-      if (Moves(b) && asks(b)) mem_.local[Root(b)] = 1;  // a kinematic body is no island
+      if (Moves(b) && asks(b)) mem_.local[Root(b)] = 1;  // excludes kinematic bodies
     }
     for (int b = 0; b < m_.body_count; ++b) mem_.root[b] = Root(b);
     for (int b = 0; b < m_.body_count; ++b) {

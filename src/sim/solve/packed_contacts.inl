@@ -87,7 +87,7 @@ class PackedContacts {
     const W zero = W::Splat(0.0);
     const V3<W> none{zero, zero, zero};
     if (first) {
-      // harmless values for lanes without this contact
+      // Lanes without this contact get harmless values.
       to.TakeLaw(from, [](const W& x, const W&) { return x; });
       to.live = zero;
       for (W& l : to.l) l = zero;

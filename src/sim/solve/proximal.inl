@@ -55,7 +55,7 @@ class Proximal {
       const bool ended_well = Round(e);
       const double before = residual;
       residual = island_.Judge();
-      // inconsistent contacts: see deadlock.inl
+      // Counts rounds that show inconsistent contacts (deadlock.inl).
       stayed = ended_well && Stays(residual, before, kStays * residual) ? stayed + 1 : 0;
       if (residual < kFalls * best) {
         stale = 0, e_at_fall = e;

@@ -71,7 +71,7 @@ void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted
 template <class W>
 TAUT_INLINE void StoreBody(const Rows<W>& s, const BodyWork<W>& body, int b,
                            double step_s) noexcept {
-  const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
+  const W zero = W::Splat(0.0);  // adding +0: see StageDriftSecond
   const V3<W> none{zero, zero, zero};
   s.old_vel[b] = s.vel[b];
   s.old_spin[b] = body.w0 + none;
@@ -91,7 +91,7 @@ TAUT_INLINE void StoreBody(const Rows<W>& s, const BodyWork<W>& body, int b,
 template <class W>
 void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
                   double step_s) noexcept {
-  const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
+  const W zero = W::Splat(0.0);  // adding +0: see StageDriftSecond
   const V3<W> none{zero, zero, zero};
   const W inv_h = W::Splat(1.0 / step_s);
   for (int b = 0; b < m.body_count; ++b) {

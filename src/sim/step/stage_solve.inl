@@ -203,7 +203,7 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
       result.linear_solves.Set(lane, result.linear_solves[lane] + linear_solves);
     }
   }
-  // ends the list of every lane
+  // Ends the list of touches of every lane.
   if (g.touches_used == 0 && touches == 0) return;
   g.touches_used = touches;
   for (int lane = 0; lane < W::kLanes; ++lane) {

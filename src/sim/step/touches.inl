@@ -75,7 +75,7 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
     c.one_direction = m.along_slip;
     c.directed = false;
     c.links[0].lin[0] = simd::Splat3<L>(point.normal);
-    c.links[0].lin[1] = c.links[0].lin[2] = c.links[0].lin[0];  // PrepareContact sets these
+    c.links[0].lin[1] = c.links[0].lin[2] = c.links[0].lin[0];  // PrepareContact sets lin[1..2]
     ContactMemory<L> memory = ContactMemory<L>::None();
     while (memory_at < memory_end && s.contact_key[memory_at][lane] >= 0 &&
            s.contact_key[memory_at][lane] < key) {
