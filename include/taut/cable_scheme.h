@@ -38,9 +38,9 @@ constexpr const char* CableSchemeName(CableScheme scheme) noexcept {
 }
 
 /// Returns the number of equal substeps of each step of `step_s` > 0, from 1 to 100. The number
-/// depends only on the step and the model. The number exceeds 1 only if stiff cables can touch
-/// edges or rods, or have less than 5 % of critical damping in a group with the scheme `kAlong`. If
-/// 100 substeps are too few, the world has the status `kStatusStepTooLong`.
+/// depends only on the step and the model. The number exceeds 1 only for stiff cables that can
+/// touch edges or rods, or that have less than 5 % of critical damping in a group with scheme
+/// `kAlong`. If 100 substeps are too few, the world has the status `kStatusStepTooLong`.
 int SubstepCount(const Model& model, double step_s);
 
 /// Returns the scheme of each cable at steps of `step_s` > 0. The schemes depend on the step and on

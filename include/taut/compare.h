@@ -81,8 +81,8 @@ struct WindowStatistics {
 };
 
 /// Comparison of one channel. Trace b is the reference, differences are a - b, means are over time.
-/// Quaternions in b get the sign of those in a, and signs are continuous in time, since q and -q
-/// are the same orientation. A channel with a period is unwrapped; its differences are modulo the
+/// Since q and -q are the same orientation, quaternions in b get the sign of those in a, and signs
+/// are continuous in time. A channel with a period is unwrapped; its differences are modulo the
 /// period. Undefined values are NaN: the lag of a constant, a percentage of zero.
 struct ChannelComparison {
   std::string name, unit;
@@ -150,7 +150,7 @@ Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options
 
 /// Returns a short summary for a terminal, one text per line without line ends. Contents: the
 /// verdict, the largest values, channels that were not compared, one line per phase, and one line
-/// per group of channels whose names differ only in the middle.
+/// per group of channels (with names that differ only in the middle).
 std::vector<std::string> ComparisonLines(const Comparison& comparison, const std::string& name_a,
                                          const std::string& name_b);
 

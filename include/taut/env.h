@@ -113,9 +113,9 @@ struct EnvStep {
 bool CheckEnvironment(const ExperimentSpec& experiment, Diagnostics& out);
 
 /// Loads an experiment like `LoadExperiment`. If loading fails, it also reports nonexistent
-/// channels in `record` and `environment`, if the valid part of the file suffices to find them, so
-/// that all errors appear at once. If loading succeeds, it does not check the channels: call
-/// `CheckRecord` and `CheckEnvironment`.
+/// channels in `record` and `environment`, so that all errors appear at once. This works only if
+/// the valid part of the file suffices to find the channels. If loading succeeds, it does not check
+/// the channels: call `CheckRecord` and `CheckEnvironment`.
 std::optional<ExperimentSpec> LoadExperimentAndChannels(const std::string& path,
                                                         const Overrides& overrides,
                                                         Diagnostics& out);

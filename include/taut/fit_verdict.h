@@ -127,8 +127,8 @@ struct ExperimentsAlone {
 
 // Effects that are not estimated.
 
-/// Effect that the fit does not estimate, such as a gain error of the load cells, with the
-/// derivatives of the residuals with respect to it.
+/// Effect that the fit does not estimate, such as a gain error of the load cells. Includes the
+/// derivatives of the residuals with respect to the effect.
 struct FitAlias {
   std::string name, unit;
   double neutral = 0;         ///< Value in the fit: 1 for a gain, 0 for an offset.

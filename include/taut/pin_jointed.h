@@ -70,10 +70,10 @@ struct PinJointed {
 /// Returns the pin-jointed structure of a robot in its described pose. Rest lengths determine the
 /// forces of strings and elastic bars. The forces of other bars balance the nodes that are neither
 /// pinned nor on the ground, in the least-squares sense; of several solutions, the one with the
-/// smallest forces is taken. A body with more than one rod becomes an equally rigid truss, with
-/// braces and, if its points are on a line or in a plane, additional nodes. `weight`: whether
-/// weights are loads. Without pinned nodes and nodes on the ground, weights are ignored, since the
-/// weight of a falling robot does not stress its members.
+/// smallest forces is taken. A body with more than one rod becomes an equally rigid truss with
+/// braces. The truss has additional nodes if the points of the body are on a line or in a plane.
+/// `weight`: whether weights are loads. Without pinned nodes and nodes on the ground, weights are
+/// ignored, since the weight of a falling robot does not stress its members.
 PinJointed PinJointedOf(const ModelDef& def, bool weight = true);
 
 // Matrices of a structure: N (3 x nodes); C (members x nodes) with -1 at the start and 1 at the end

@@ -175,7 +175,7 @@ class Simulation {
   std::vector<std::uint8_t> Save(int world = 0);
   /// Restores a serialized world into any world of a simulation with the same experiment and
   /// extensions. The continuation is bit-identical. The variant of the snapshot must have been
-  /// passed to the simulation at its creation or to `Reset`. If it was not, or if the snapshot is
+  /// passed to the simulation at its creation or to `Reset`. Otherwise, or if the snapshot is
   /// damaged or from another experiment or other controllers, returns false, adds an error and
   /// changes nothing.
   bool Restore(std::span<const std::uint8_t> snapshot, Diagnostics& out, int world = 0);

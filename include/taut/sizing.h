@@ -73,8 +73,8 @@ struct SizingMargins {
 SizingMargins SizingMarginsOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
                               const CableDemand& cable);
 /// Evaluates a spring in series with an inextensible cable. The spring fits if all margins are at
-/// least `factor` and the relative difference of its stiffness from the cable's is at most
-/// `stiffness_tolerance`.
+/// least `factor`, and the relative difference between the stiffnesses of spring and cable is at
+/// most `stiffness_tolerance`.
 SizingMargins SizingMarginsOf(const CatalogueSpring& spring, double factor,
                               double stiffness_tolerance, const CableDemand& cable);
 

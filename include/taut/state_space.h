@@ -53,8 +53,7 @@ struct StateSpace {
   std::vector<std::string> remarks;  ///< Omissions, and the reason for finite differences.
   Derivatives derivatives = Derivatives::kExact;
   /// Largest difference between both methods in a matrix entry, relative to the largest entry of
-  /// its kind (derivatives of velocities with respect to rotations, of tensions with respect to
-  /// positions, ...).
+  /// the same kind. Kinds are, for example, derivatives of velocities with respect to rotations.
   double disagreement = 0;
   /// Length of a tick: the period of the controllers, or a step without controllers.
   double period_s = 0;
@@ -65,11 +64,11 @@ struct StateSpace {
   std::vector<std::string> bodies, cables;  ///< Names in the order of `pose`.
 };
 
-/// Computes the linear system of an experiment. `found` is false, with the reason in `why` and a
-/// remedy in `hint`, if the robot does not come to rest, a cable is about to go slack, a contact is
-/// about to slip or open, controllers have different periods, or there are kinematic bodies.
-/// Pushes, drags, gaits, sensor errors and start noise are omitted, with remarks. If the experiment
-/// cannot start, adds the same diagnostics as `RunExperiment`.
+/// Computes the linear system of an experiment. `found` is false if the robot does not come to
+/// rest, a cable is about to go slack, a contact is about to slip or open, controllers have
+/// different periods, or there are kinematic bodies. Then `why` contains the reason and `hint` a
+/// remedy. Pushes, drags, gaits, sensor errors and start noise are omitted, with remarks. If the
+/// experiment cannot start, adds the same diagnostics as `RunExperiment`.
 StateSpace FindStateSpace(const ExperimentSpec& experiment, const LinearOptions& options,
                           Diagnostics& out);
 

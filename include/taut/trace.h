@@ -27,7 +27,7 @@ struct ChannelInfo {
   double period = 0.0;
 };
 
-/// Returns the unit at the end of a name, for formats that cannot store units: "N" for
+/// Returns the unit at the end of a name, for formats that cannot store units. Examples: "N" for
 /// `cable/a/tension_n`, "kg/m" for `mass_kg_per_m`, "1" without a known unit.
 std::string UnitOfName(std::string_view name);
 

@@ -24,10 +24,10 @@ namespace taut {
 class Model {
  public:
   /// Checks the numbers of `def` and compiles it. Returns null and adds diagnostics (without file
-  /// positions) if a number is invalid (a negative mass, NaN, an index out of range), or if the
-  /// environment variable TAUT_SIMD does not name an instruction set. Adds a warning if `def`
-  /// belongs to an experiment with controllers, events or a settled start, which a `WorldBatch`
-  /// ignores.
+  /// positions) if a number is invalid, such as a negative mass, NaN or an index out of range. Also
+  /// returns null if the environment variable TAUT_SIMD does not name an instruction set. Adds a
+  /// warning if `def` belongs to an experiment with controllers, events or a settled start, which a
+  /// `WorldBatch` ignores.
   static std::shared_ptr<const Model> Compile(const ModelDef& def, Diagnostics& out);
   /// Same as `Compile`, but without this warning, for programs that run the controllers and events.
   static std::shared_ptr<const Model> CompileForExperiment(const ModelDef& def, Diagnostics& out);
@@ -313,8 +313,8 @@ class WorldBatch {
   Vec3 Momentum(int world) const noexcept;              ///< Total momentum [kg m/s], in W.
   Vec3 AngularMomentum(int world) const noexcept;       ///< About the origin of W [kg m^2/s].
   std::vector<ContactState> Contacts(int world) const;  ///< Of the last step.
-  /// Returns the overlaps in the current pose. For each pair of bodies, and for each body and
-  /// plane, the list contains only the overlap with the largest ratio of depth to half thickness.
+  /// Returns the overlaps in the current pose. The list contains one overlap per pair of bodies,
+  /// and per body and plane: the overlap with the largest ratio of depth to half thickness.
   std::vector<Overlap> Overlaps(int world) const;
 
   // --- state -------------------------------------------------------------------------------

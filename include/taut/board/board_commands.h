@@ -99,9 +99,9 @@ constexpr void Put32(uint8_t* at, uint32_t x) noexcept {
 constexpr uint32_t Get32(const uint8_t* at) noexcept {
   return Get16(at) | static_cast<uint32_t>(Get16(at + 2)) << 16;
 }
-/// Appends the CRC-16, high byte first (other numbers are little endian). In this order, as in the
-/// theory of CRCs, the checksum continues the bits of the message and detects any burst of up to 16
-/// wrong bits.
+/// Appends the CRC-16, high byte first (other numbers are little endian). In this order, the
+/// checksum continues the bits of the message, as in the theory of CRCs. It detects any burst of up
+/// to 16 wrong bits.
 constexpr void Seal16(uint8_t* frame, size_t size) noexcept {
   const uint16_t crc = Crc16(frame, size - 2);
   frame[size - 2] = static_cast<uint8_t>(crc >> 8);

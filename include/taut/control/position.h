@@ -1,9 +1,9 @@
 /// Position control: rest lengths follow a program, a given function of time (points with linear
 /// interpolation).
 ///
-/// The paper uses position control "at startup to set the initial length of each cable and to
-/// maintain the balance of all three segments". The paper's boards receive motor angles. taut
-/// commands rest lengths: the motor angle times the radius of the spool.
+/// Mirletz et al. 2015 use position control "at startup to set the initial length of each cable and
+/// to maintain the balance of all three segments". Their boards receive motor angles. taut commands
+/// rest lengths: the motor angle times the radius of the spool.
 #pragma once
 
 #include <stddef.h>
@@ -41,7 +41,7 @@ constexpr Real RestLengthAt(const ProgramPoint<Real, Time>* points, size_t count
 
 /// Returns the rate of the rest length [m/s] from a PID controller of the rest length error,
 /// limited to +-`max_speed_m_per_s` (eq. K.11). Used on boards that can command only a winding
-/// rate. The gains are assumptions of taut; the paper contains none.
+/// rate. The gains are assumptions of taut, because that paper contains none.
 template <class Real>
 constexpr Real RestLengthByPid(const Pid<Real>& pid, PidState<Real>& state, Real rest_length_m,
                                Real set_point_m, Real period_s, Real max_speed_m_per_s,

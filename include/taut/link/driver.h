@@ -105,8 +105,8 @@ class Driver {
 
   /// Called after each cycle.
   std::function<void(const State&)> on_cycle;
-  /// Called with the text of an event for a log, such as a fault of a board or cable or the reason
-  /// of a stop.
+  /// Called with the text of an event, for a log. Events are, for example, faults of boards and
+  /// cables, and stops with their reasons.
   std::function<void(double time_s, const std::string& text)> on_event;
 
  private:

@@ -1,6 +1,6 @@
 /// Storage of detected contacts: in the slots of a body if the other body is static, otherwise in
-/// the lists of touches. Clearances are lower bounds of distances; they delay the next distance
-/// query of two bodies.
+/// the list of contacts of moving bodies (touches) of the lane. Clearances are lower bounds of
+/// distances; they delay the next distance query of two bodies.
 #pragma once
 
 #include "sim/contacts/shape_pairs.inl"
@@ -119,7 +119,7 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
 
 /// Stores the contact points of one pair of shapes in one lane, sorted by feature, except points
 /// that only pass by (swept_test.h). The storage is a slot of a body if the other body is static,
-/// otherwise the list of touches.
+/// otherwise the list of contacts of moving bodies.
 template <class W>
 TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                            const ShapePairTable& pair, int lane, double step_s, NearParts* kept,

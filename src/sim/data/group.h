@@ -29,7 +29,7 @@ struct Group {
   int first_world = 0;
   double* rows = nullptr;
   int* slots_used = nullptr;  ///< Per body: number of slots used in any lane in the last step.
-  int touches_used = 0;       ///< Length of the longest list of touches of a lane in the last step.
+  int touches_used = 0;       ///< Largest number of contacts of moving bodies in a lane, last step.
   int* forced_nodes = nullptr;  ///< Nodes that ever had an external force, ascending.
   int forced_count = 0;
   /// Caches of near parts: for pair `WorldPairTable::kept` in lane j at [kept * lanes + j].

@@ -29,7 +29,7 @@ template <class Num>
 struct LaneMemory {
   static constexpr int64_t kFullBodies = 128;
 
-  Row<Contact<Num, 2>> pairs;  ///< Prepared contacts from the list of touches of the lane.
+  Row<Contact<Num, 2>> pairs;  ///< Prepared contacts of moving bodies of the lane.
   /// Per body: its island, and its number in this island; bodies of an island.
   Row<int> root, local, bodies;
   Row<int> order, place;  ///< Elimination order and its inverse.

@@ -32,8 +32,8 @@ class LaneSolve {
         lane_(lane),
         h_(L::Splat(step_s)) {}
 
-  /// Solves the islands of the lane with touches or with bodies marked as unsolved. Call
-  /// PrepareTouches before.
+  /// Solves the islands of the lane with contacts of moving bodies, or with bodies marked as
+  /// unsolved. Call PrepareTouches before.
   LaneResult Solve() noexcept {
     LaneResult result;
     FindIslands([&](int body) { return work_.unsolved[body][lane_] > 0; });

@@ -203,7 +203,7 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
       result.linear_solves.Set(lane, result.linear_solves[lane] + linear_solves);
     }
   }
-  // Ends the list of touches of every lane.
+  // Ends the list of contacts of moving bodies in every lane.
   if (g.touches_used == 0 && touches == 0) return;
   g.touches_used = touches;
   for (int lane = 0; lane < W::kLanes; ++lane) {
@@ -215,7 +215,7 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
 
 /// Stage: solve.
 ///   reads   contacts[], touches[] (geometry), stiff cables, pos, memory of the previous step
-///   writes  bodies[].v, .w, impulses, mom, memory of touches, joint_*
+///   writes bodies[].v, .w, impulses, mom, memory of contacts of moving bodies, joint_*
 template <class W>
 SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
                           const StepSettings& settings, double step_s) noexcept {

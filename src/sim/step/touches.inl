@@ -42,7 +42,7 @@ void FollowMotion(const Scratch<W>& work, int lane, Contact<L, 2>& c, L h) noexc
   }
 }
 
-/// Prepares the touches of a lane as contacts, with warm starts identified by their keys.
+/// Prepares the contacts of moving bodies of a lane, with warm starts identified by their keys.
 template <class W>
 void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int lane,
                     double step_s) noexcept {
@@ -109,7 +109,8 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
   }
 }
 
-/// Applies the impulses of the touches of a lane to momenta, and stores them in the contact memory.
+/// Applies the impulses of the contacts of moving bodies to the momenta of a lane, and stores these
+/// impulses in the contact memory.
 template <class W>
 void FinishTouches(const View& m, const Rows<W>& s, Scratch<W>& work, int lane,
                    double step_s) noexcept {
