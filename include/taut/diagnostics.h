@@ -44,7 +44,7 @@ class MessageId {
 struct Diagnostic {
   SourceRef at;
   std::string what;
-  std::string hint;     ///< May be empty.
+  std::string hint;     ///< Hint for the fix; may be empty.
   std::string_view id;  ///< Text of a MessageId.
   /// The file cannot be opened or read, so its contents are unknown.
   bool unreadable = false;
@@ -67,7 +67,7 @@ class Diagnostics {
 
   /// Returns whether there are no errors; warnings are allowed.
   bool ok() const noexcept { return items_.empty(); }
-  const std::vector<Diagnostic>& items() const noexcept { return items_; }  ///< The errors.
+  const std::vector<Diagnostic>& items() const noexcept { return items_; }  ///< Errors.
   const std::vector<Diagnostic>& warnings() const noexcept { return warnings_; }
 
   /// Returns one line per error or warning, sorted by file, line and column, without duplicates:

@@ -52,7 +52,7 @@ constexpr bool Failed(EpisodeEnd end) noexcept { return end > EpisodeEnd::kFell;
 struct EpisodeState {
   std::uint64_t seed = 0;  ///< Seed after the modulo by `EnvironmentVariation::starts`.
   std::int64_t steps = 0;  ///< Number of actions.
-  double reward = 0;       ///< Sum over all steps.
+  double reward = 0;       ///< Sum of the rewards of all steps.
   EpisodeEnd end = EpisodeEnd::kNone;
 };
 
@@ -63,13 +63,13 @@ class Env;
 struct EnvView {
   const Env& env;
   std::span<const std::uint8_t> rows;  ///< Per world: whether its row is valid.
-  std::span<float> observations_f32;   ///< (worlds, observations); writable.
+  std::span<float> observations_f32;   ///< Shape (worlds, observations); writable.
   std::span<double> observations_f64;
   // The next four are filled only in calls of `judge`.
-  std::span<const float> actions_f32;  ///< (worlds, actions), as passed to `Step`.
+  std::span<const float> actions_f32;  ///< Shape (worlds, actions), as passed to `Step`.
   std::span<const double> actions_f64;
-  std::span<double> rewards;           ///< (worlds); writable.
-  std::span<std::uint8_t> terminated;  ///< (worlds); may be set to 1.
+  std::span<double> rewards;           ///< Shape (worlds); writable.
+  std::span<std::uint8_t> terminated;  ///< Shape (worlds); may be set to 1.
 };
 
 struct EnvOptions {
@@ -97,10 +97,10 @@ struct EnvOptions {
 /// `WorldBatch`. All values are finite.
 template <class T>
 struct EnvStep {
-  std::span<T> observations;           ///< (worlds, observations)
-  std::span<double> rewards;           ///< (worlds)
-  std::span<std::uint8_t> terminated;  ///< (worlds): 0 or 1.
-  std::span<std::uint8_t> truncated;   ///< (worlds): 0 or 1.
+  std::span<T> observations;           ///< Shape (worlds, observations).
+  std::span<double> rewards;           ///< Shape (worlds).
+  std::span<std::uint8_t> terminated;  ///< Shape (worlds): 0 or 1.
+  std::span<std::uint8_t> truncated;   ///< Shape (worlds): 0 or 1.
   /// (worlds, observations): last observations of ended episodes. Required with `kSameStep`, unused
   /// otherwise.
   std::span<T> final_observations = {};

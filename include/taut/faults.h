@@ -47,7 +47,7 @@ struct FaultSpec {
 
 struct FaultScript {
   std::string name, description;
-  std::vector<FaultSpec> faults;   ///< In file order.
+  std::vector<FaultSpec> faults;   ///< Faults in file order.
   std::vector<std::string> files;  ///< All files read; the script is first.
 };
 

@@ -99,7 +99,7 @@ enum class FitEnd {
 /// One search: start, held parameters, left-out groups. All searches of a call run in lockstep, so
 /// their points are computed together.
 struct FitJob {
-  std::vector<double> start;   ///< Clipped to the bounds.
+  std::vector<double> start;   ///< Start point, clipped to the bounds.
   std::vector<bool> held;      ///< Parameters fixed at their start value; empty: none.
   std::vector<bool> left_out;  ///< Excluded groups, by number; empty: none.
 };
@@ -129,7 +129,7 @@ struct FitState {
 struct FitOptions {
   int starts = 1;  ///< Number of starts: the start values of the parameters, then random ones.
   std::uint64_t seed = 0;
-  int most_iterations = 100;  ///< Maximum per start.
+  int most_iterations = 100;  ///< Maximum number of iterations per start.
   int dampings = 3;           ///< Trial points per iteration, with different dampings.
   double first_damping = 1e-3;
   /// Tolerance for the cosine between the residuals and the columns of the Jacobian.

@@ -58,7 +58,7 @@ struct FitEstimate {
   };
   Kind kind = Kind::kParameter;
   std::string name;       ///< For example "k12_n_per_m", "offset body/v/position_z_m", "delay t0".
-  std::string unit;       ///< Empty if unknown.
+  std::string unit;       ///< Unit of the estimate; empty if unknown.
   std::string parameter;  ///< Parameter name, for kParameter.
   std::string channels;   ///< Channel pattern, for kOffset and kGain.
   std::vector<std::size_t> experiments;  ///< Indices of the affected experiments.
@@ -96,7 +96,7 @@ enum class FitGroups { kExperiment, kChannel, kWindow };
 struct FitSearch {
   int starts = 1;           ///< Number of starts; the first has the values of the experiments.
   double step = 0.1;        ///< Step of finite differences, in units of the scale.
-  int iterations = 50;      ///< Maximum per start.
+  int iterations = 50;      ///< Maximum number of iterations per start.
   std::uint64_t seed = 0;   ///< Seed of the random starts.
   int folds = 0;            ///< Number of cross-validation folds over groups; 0: none.
   double tolerance = 1e-6;  ///< Relative change of the cost at which the search ends.

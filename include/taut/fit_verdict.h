@@ -320,7 +320,7 @@ struct FitVerdict {
   std::vector<AliasTest> aliases;  ///< In descending order of `fall`.
   CrossValidation cross_validation;
   std::optional<FitErrors> hold_out;
-  FitErrors train;                     ///< On the fitted data.
+  FitErrors train;                     ///< Errors on the fitted data.
   ChiSquare data, prior;               ///< Parts of `total`; robust losses replace squares.
   ChiSquare total;                     ///< Exact for a linear model with normal errors.
   std::vector<std::string> sentences;  ///< Report: first the verdict, then its reasons.

@@ -9,7 +9,7 @@ namespace taut {
 /// Contact before the solve of a step. SI units, world frame W.
 struct FrictionContact {
   int world = 0;
-  double time_s = 0;                ///< Start of the step.
+  double time_s = 0;                ///< Time at the start of the step.
   int body_a = 0, body_b = kWorld;  ///< A is a moving body.
   /// Touching surfaces; `ModelDef` contains their names and materials.
   ShapeRef surface_a, surface_b;

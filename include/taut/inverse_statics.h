@@ -23,7 +23,7 @@ namespace taut {
 struct TouchDef {
   int body = 0;
   int other = kWorld;     ///< Other body; the opposite force acts on it.
-  Vec3 point_m, normal;   ///< Unit normal, toward `body`.
+  Vec3 point_m, normal;   ///< Contact point; unit normal, toward `body`.
   double friction = 0.0;  ///< Static friction coefficient, >= 0.
 };
 
@@ -35,8 +35,8 @@ std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m);
 /// Bounds of tension and force density of a cable. All bounds apply together.
 struct CableBounds {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
-  double at_least_n = 0.0, at_most_n = kNone;              ///< Tension, >= 0.
-  double at_least_n_per_m = 0.0, at_most_n_per_m = kNone;  ///< Force density.
+  double at_least_n = 0.0, at_most_n = kNone;              ///< Bounds of the tension, >= 0.
+  double at_least_n_per_m = 0.0, at_most_n_per_m = kNone;  ///< Bounds of the force density.
 };
 
 /// Quantity to minimize, summed over the cables (eq. 3).

@@ -108,7 +108,7 @@ struct StudyResult {
   std::string name;
   std::string taut_version;  ///< Version of taut that started the study.
   std::vector<StudyParameter> parameters;
-  std::vector<Evaluation> evaluations;  ///< Ordered by id.
+  std::vector<Evaluation> evaluations;  ///< Evaluations, ordered by id.
   ExperimentSpec experiment;            ///< Resolved experiment.
   std::vector<std::string> skipped;     ///< Damaged records: "evaluation 17: ...".
 

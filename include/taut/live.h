@@ -19,13 +19,13 @@ struct LiveControl {
   int cable = 0;
   /// Present for impedance control; absent for rest length commands.
   std::optional<ImpedanceGains> impedance;
-  double rest_length_m = 0;  ///< Present command.
+  double rest_length_m = 0;  ///< Present rest length command.
 };
 
 /// Interactive drag: a spring and damper pull a node toward a target point.
 struct HandSpec {
   int node = 0;
-  Vec3 target_m;  ///< In W.
+  Vec3 target_m;  ///< Target point, in W.
 };
 
 /// Interactive run of an experiment.

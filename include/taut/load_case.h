@@ -13,11 +13,11 @@ namespace taut {
 struct LoadCaseSpec {
   struct NodeForce {
     int node = 0;
-    Vec3 force_n;  ///< In W.
+    Vec3 force_n;  ///< Force, in W.
   };
   struct Settlement {
     int joint = 0;  ///< Support whose point in the world moves.
-    Vec3 by_m;      ///< In W.
+    Vec3 by_m;      ///< Displacement, in W.
   };
   struct Lengthening {
     int index = 0;  ///< Index of a cable or, in `bars`, of a joint that is a bar.

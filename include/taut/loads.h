@@ -42,7 +42,7 @@ std::vector<StrutForce> StrutForces(const ModelDef& def, const std::vector<BodyF
 /// Reaction of an anchored body to `forces` and to its weight.
 struct Reaction {
   int body = 0;
-  Vec3 force_n;     ///< In W.
+  Vec3 force_n;     ///< Reaction force, in W.
   Vec3 torque_n_m;  ///< About `com_m` of the body, in W.
 };
 /// Returns the reactions of all fixed bodies.

@@ -59,7 +59,7 @@ struct BodyDef {
   Vec3 com_m;                       ///< Center of mass in W.
   Inertia inertia_kg_m2;            ///< About the center of mass, in axes parallel to W.
   Vec3 velocity_m_per_s;            ///< Velocity of the center of mass, in W.
-  Vec3 angular_velocity_rad_per_s;  ///< In W.
+  Vec3 angular_velocity_rad_per_s;  ///< Angular velocity, in W.
   bool fixed = false;               ///< Anchored to the world or kinematic: forces do not move it.
   bool operator==(const BodyDef&) const = default;
 };
@@ -182,9 +182,9 @@ struct CableDef {
   static constexpr int kMostBends = 8;
   std::string name;
   std::vector<AttachmentDef> attachments;  ///< At least 2, in order along the cable.
-  double stiffness_n_per_m = 0.0;          ///< k > 0.
-  double damping_n_s_per_m = 0.0;          ///< b >= 0.
-  double rest_length_m = 0.0;              ///< L > 0 at t = 0.
+  double stiffness_n_per_m = 0.0;          ///< Stiffness k > 0.
+  double damping_n_s_per_m = 0.0;          ///< Damping coefficient b >= 0.
+  double rest_length_m = 0.0;              ///< Rest length L > 0 at t = 0.
   DampingLaw damping_law = DampingLaw::kExact;
   ActuatorDef actuator;
   /// Obstacles of the cable. All except kNone require two attachments without wheels, and
@@ -239,7 +239,7 @@ struct HeightFieldDef {
 /// Terrain mesh: ground of any shape, made of triangles.
 struct TerrainMeshDef {
   std::string name;
-  std::vector<Vec3> corners_m;  ///< In W.
+  std::vector<Vec3> corners_m;  ///< Corners, in W.
   /// Corner indices, counterclockwise seen from outside.
   std::vector<std::array<int, 3>> triangles;
   bool solid = true;  ///< True: closed surface around a solid. False: thin sheet with two sides.

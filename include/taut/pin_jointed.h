@@ -43,7 +43,7 @@ struct PinMember {
   int from = 0, to = 0;  ///< Node indices.
   int cluster = 0;
   double length_m = 0;
-  double force_n = 0;  ///< Tension > 0.
+  double force_n = 0;  ///< Axial force; tension > 0.
   double force_density_n_per_m = 0;
   double stiffness_n_per_m = 0;  ///< Axial stiffness; 0: rigid.
   double rest_length_m = 0;      ///< For a rigid member: its length.

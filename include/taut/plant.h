@@ -46,7 +46,7 @@ constexpr Lanes AllLanes(int count) noexcept { return static_cast<Lanes>((1ull <
 enum FaultBits : std::uint32_t {
   kFaultNone = 0,
   kFaultNoReading = 1u << 0,  ///< No new reading; the last one remains.
-  kFaultSensor = 1u << 1,     ///< Impossible reading.
+  kFaultSensor = 1u << 1,     ///< The reading is impossible.
   kFaultActuator = 1u << 2,   ///< The actuator does not follow its command.
 };
 
@@ -71,7 +71,7 @@ struct Observation {
   /// true ones if gears have backlash. Null: they do not differ.
   const double* shaft_m = nullptr;
   const std::uint32_t* faults = nullptr;  ///< Row of `FaultBits`; null: no fault detection.
-  const Bodies* bodies = nullptr;         ///< Null if unknown.
+  const Bodies* bodies = nullptr;         ///< States of the bodies; null if unknown.
   /// Measured horizontal unit vector toward the goal, from a compass and a beacon, in the frame
   /// `GoalSpec::frame`. x of lane j is at [j], y at [lanes + j]. Null: not measured.
   const double* goal = nullptr;

@@ -26,7 +26,7 @@ struct RolloutResult {
   double energy_j = 0;  ///< Motor work of winding in, over the whole run.
   double max_tension_n = 0;
   double tracking_n = 0;         ///< Root mean square of tension minus set point.
-  std::optional<double> fell_s;  ///< Time of a fall.
+  std::optional<double> fell_s;  ///< Time of the fall, if any.
   std::uint64_t state_hash = 0;  ///< Hash of the state of the world at the end.
 };
 

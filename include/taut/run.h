@@ -38,7 +38,7 @@ struct MotorSummary {
 struct CableSummary {
   std::string name;
   struct Quantity {
-    double max_n = 0;              ///< Over the whole run.
+    double max_n = 0;              ///< Maximum over the whole run.
     double max_after_start_n = 0;  ///< From t = 5 s to the end.
     std::vector<Range> phases;     ///< One per phase of the experiment [N].
   };

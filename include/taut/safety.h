@@ -47,7 +47,7 @@ struct MemberLoad {
   /// Euler load / compression. The buckling length is the member length if the model has none.
   std::optional<double> buckling;
   std::optional<double> yield;     ///< Yield stress * area / largest force magnitude.
-  std::optional<double> strength;  ///< Strength / tension.
+  std::optional<double> strength;  ///< Safety factor: strength / tension.
   /// Load factor at which the cable goes slack, if its tension decreases linearly with the load.
   /// Only for cables with less tension than in the unloaded structure.
   std::optional<double> slackening;

@@ -19,7 +19,7 @@ struct ShapeMesh {
   Kind kind = Kind::kRod;
   std::string name;  ///< Name of the shape or cable.
   int body = kWorld;
-  std::vector<Vec3> corners_m;  ///< In W.
+  std::vector<Vec3> corners_m;  ///< Corners, in W.
   std::vector<Vec3> normals;    ///< One per corner on round surfaces; empty: flat faces.
   std::vector<std::array<int, 3>> triangles;
 };

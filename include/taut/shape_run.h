@@ -29,7 +29,7 @@ struct Shape {
 struct ShapeLook {
   double size = 0.08;     ///< Largest displacement relative to the size of the robot, > 0.
   double period_s = 2.0;  ///< Displayed period of the oscillation, > 0.
-  int periods = 2;        ///< >= 1
+  int periods = 2;        ///< Number of displayed periods, >= 1.
   double rate_hz = 30.0;  ///< Rows per second, > 0.
 };
 

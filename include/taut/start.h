@@ -30,8 +30,8 @@ bool Settle(WorldBatch& batch, int world, double step_s, const std::function<boo
 
 /// Pose of a robot.
 struct Pose {
-  std::vector<BodyState> bodies;       ///< Velocities are ignored.
-  std::vector<double> rest_lengths_m;  ///< Per cable.
+  std::vector<BodyState> bodies;       ///< States of the bodies; velocities are ignored.
+  std::vector<double> rest_lengths_m;  ///< Rest length of each cable.
 };
 
 /// Returns the robot with `pose` as its described pose, at rest.

@@ -38,7 +38,7 @@ std::vector<BodyLoad> StartLoads(const ModelDef& def);
 /// a support, this is the reaction on the robot.
 struct JointLoad {
   Vec3 force_n;
-  Vec3 torque_n_m;  ///< About `to_m`.
+  Vec3 torque_n_m;  ///< Torque about `to_m`.
 };
 
 /// Maximum number of constrained directions for `StartJointLoads`, whose time grows with the cube
@@ -55,7 +55,7 @@ std::vector<JointLoad> StartJointLoads(const ModelDef& def);
 /// Resultant of cables, weight and joint loads. The resultant accelerates a moving body; the
 /// support of a fixed body carries it.
 struct LeftLoad {
-  Vec3 force_n;     ///< In W.
+  Vec3 force_n;     ///< Resultant force, in W.
   Vec3 torque_n_m;  ///< About the center of mass of the body, in W.
 };
 /// Returns the resultant of each body of `def`. `joints`: one per joint.

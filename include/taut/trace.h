@@ -118,7 +118,7 @@ struct TableLayout {
   bool merged_header = false;
   std::vector<std::string> columns;  ///< Column names that replace those in the header.
   char separator = ',';              ///< A blank stands for any number of blanks.
-  char decimal = '.';                ///< Decimal point or comma.
+  char decimal = '.';                ///< Decimal mark: point or comma.
   TextEncoding encoding = TextEncoding::kUtf8;
   std::vector<std::string> ignore;  ///< Patterns with `*` of columns to ignore.
 
@@ -128,7 +128,7 @@ struct TableLayout {
   ClockFormat clock = ClockFormat::kNumber;
   double unit_s = 1.0;
   std::optional<double> zero = 0.0;
-  double offset_s = 0.0;  ///< Added to all times.
+  double offset_s = 0.0;  ///< Offset that is added to all times.
   std::optional<double> row_s;
 
   // Only for tables with one value per row (long format): columns whose values, joined by `_`, are

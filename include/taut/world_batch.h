@@ -122,7 +122,7 @@ struct CableRows : ReadingRows {
 /// Point on the path of a cable.
 struct CablePoint {
   int body = kWorld;
-  Vec3 position_m;  ///< In W.
+  Vec3 position_m;  ///< Position of the point, in W.
   Vec3 force_n;     ///< Force of the cable on the body at this point, in W.
 };
 
@@ -137,7 +137,7 @@ struct BodyState {
   Vec3 position_m;        ///< Position of the center of mass, in W.
   Quat orientation;       ///< Rotation from the orientation at t = 0, in W; identity at t = 0.
   Vec3 velocity_m_per_s;  ///< Velocity of the center of mass, in W.
-  Vec3 angular_velocity_rad_per_s;  ///< In W.
+  Vec3 angular_velocity_rad_per_s;  ///< Angular velocity, in W.
 };
 
 struct Energy {
@@ -148,7 +148,7 @@ struct Energy {
 struct ContactState {
   int body_a = 0, body_b = kWorld;  ///< `force_n` acts on A, its opposite on B.
   Vec3 point_m, normal;             ///< In W; normal points from B to A.
-  Vec3 force_n;                     ///< On A, in W.
+  Vec3 force_n;                     ///< Force on A, in W.
   double gap_m = 0;
 };
 
@@ -312,7 +312,7 @@ class WorldBatch {
   Energy TotalEnergy(int world) const noexcept;
   Vec3 Momentum(int world) const noexcept;              ///< Total momentum [kg m/s], in W.
   Vec3 AngularMomentum(int world) const noexcept;       ///< About the origin of W [kg m^2/s].
-  std::vector<ContactState> Contacts(int world) const;  ///< Of the last step.
+  std::vector<ContactState> Contacts(int world) const;  ///< Contacts of the last step.
   /// Returns the overlaps in the current pose. The list contains one overlap per pair of bodies,
   /// and per body and plane: the overlap with the largest ratio of depth to half thickness.
   std::vector<Overlap> Overlaps(int world) const;

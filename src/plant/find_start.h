@@ -35,7 +35,7 @@ Pose PoseOf(const WorldBatch& batch);
 
 /// State of a world before it settles, to compare with the settled state.
 struct Unsettled {
-  std::vector<double> elastic_n;           ///< Per cable.
+  std::vector<double> elastic_n;           ///< Elastic tension of each cable.
   std::set<std::pair<int, int>> touching;  ///< Pairs of bodies in contact, the lower index first.
 };
 /// Records the current state. Does not change the world.

@@ -21,7 +21,7 @@ constexpr uint8_t kTimeoutTicks = 100;
 
 /// Inputs of a tick, read from the chip.
 struct Inputs {
-  uint16_t adc[kMotors];      ///< 0 .. 1023.
+  uint16_t adc[kMotors];      ///< Load cell readings, 0 .. 1023.
   uint16_t encoder[kMotors];  ///< Modulo 2^16; increases when winding in.
   bool driver_fault;
   uint8_t elapsed;  ///< Timer ticks since the previous call; 1 without missed ticks.

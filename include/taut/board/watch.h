@@ -24,7 +24,7 @@ struct WatchLimits {
   uint16_t over_counts = 0, slack_counts = 0;
   int16_t step_counts = 0;  ///< Encoder counts per tick at the speed limit.
   int16_t slack_way_counts = 0;
-  int16_t stall_width = 0;      ///< PWM steps.
+  int16_t stall_width = 0;      ///< Stall duty [PWM steps].
   int16_t polarity_counts = 0;  ///< Encoder counts in kMuchDutyTicks at a tenth of the speed limit.
 };
 

@@ -71,7 +71,7 @@ constexpr Real StepPid(const Pid<Real>& pid, PidState<Real>& state, Real error,
 /// Output range of an actuator.
 template <class Real>
 struct OutputLimits {
-  Real low, high;  ///< low <= high.
+  Real low, high;  ///< Limits of the output, low <= high.
 };
 
 /// Anti-windup: integration while the output is at a limit.

@@ -11,7 +11,7 @@ namespace control {
 /// Wave of one cable.
 template <class Real>
 struct Sine {
-  Real amplitude_m_per_s;  ///< May be negative.
+  Real amplitude_m_per_s;  ///< Amplitude; may be negative.
   Real phase_turns;        ///< Phase at t = 0; -1/2..1/2.
   Real offset_m_per_s;
 };

@@ -74,7 +74,7 @@ class RobotPlant final : public Plant {
   std::vector<int> cables_;  ///< Cable indices of the motors.
   board::Mode mode_ = board::Mode::kHold;
   BoardsSpec boards_;         ///< Boards of the experiment, or the defaults.
-  bool holding_ = false;      ///< Until `BoardsSpec::hold_s`.
+  bool holding_ = false;      ///< Whether motors hold, until `BoardsSpec::hold_s`.
   std::vector<double> rows_;  ///< Rows of six readings and of the commanded rest lengths.
   std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;
   std::vector<CommandMode> command_mode_;

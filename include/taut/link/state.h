@@ -13,7 +13,7 @@ namespace taut::link {
 
 /// Scales of the numbers of a motor, from the board parameters.
 struct MotorFigures {
-  double n_per_count = 0.1567, counts_at_zero = 31.5;  ///< Load cell.
+  double n_per_count = 0.1567, counts_at_zero = 31.5;  ///< Scale of the load cell.
   /// Encoder; winding in increases the count and shortens the cable.
   double m_per_count = 1.34e-5;
   double rest_length_at_reference_m = 0.2;
@@ -21,10 +21,10 @@ struct MotorFigures {
 };
 
 struct MotorView {
-  double tension_n = 0;                                           ///< Filtered by the board.
-  double set_point_n = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no set point.
+  double tension_n = 0;  ///< Tension, filtered by the board.
+  double set_point_n = std::numeric_limits<double>::quiet_NaN();  ///< Tension set point; NaN: none.
   std::int64_t encoder_counts = 0;  ///< Relative to the reference position.
-  double rest_length_m = 0;         ///< From the encoder count.
+  double rest_length_m = 0;         ///< Rest length from the encoder count.
   double length_m = 0;      ///< Rest length plus the extension of the spring by the tension.
   double duty = 0;          ///< Duty of the motor, -1 .. 1; positive winds in.
   std::uint8_t faults = 0;  ///< `board::MotorFault` bits.

@@ -42,7 +42,7 @@ struct ContactMemory {
 
 /// Contact of two moving shapes in one lane.
 struct TouchingPair {
-  int a, b;           ///< Shapes.
+  int a, b;           ///< Indices of the shapes.
   std::uint32_t key;  ///< Key of the first possible contact of the two shapes.
   TouchPoint point;
 };

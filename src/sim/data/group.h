@@ -37,7 +37,7 @@ struct Group {
   MovingPair* near = nullptr;    ///< Bodies near each other in some lane, ascending.
   int near_count = 0;            ///< Number of pairs in `near`; -1: more than View::near_capacity.
   bool sensed = false;           ///< The kSensed rows are up to date. Shared by const readers.
-  LaneStatus* status = nullptr;  ///< Per lane.
+  LaneStatus* status = nullptr;  ///< Status per lane.
 };
 
 struct StepSettings {

@@ -108,10 +108,10 @@ struct ImplicitMemory {
   Row<ImplicitCable<Num>> list;
   Row<ImplicitJoint<Num>> joints;
   Row<ImplicitJointRow<Num>> joint_rows;
-  Row<Num> U, trial, res, trial_res, step, back, ends;  ///< 6 per body.
+  Row<Num> U, trial, res, trial_res, step, back, ends;  ///< Vectors with 6 numbers per body.
   Row<Num> gap, bias, start, total, unit;               ///< Per row; start: warm-start impulses.
-  Row<int> compact, active;                             ///< Per row.
-  Row<Num> x, w, k;                                     ///< Per active row.
+  Row<int> compact, active;                             ///< One number per row.
+  Row<Num> x, w, k;                                     ///< One number per active row.
   Row<Num> l, u, y, f, best;
   int row_capacity;
 

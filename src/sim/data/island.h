@@ -56,7 +56,7 @@ struct Unknown {
   int body;          ///< Index in the world.
   int size = kDofs;  ///< Number of velocities: 6, 3 or 1.
   Num mass, inv_mass;
-  S3<Num> inertia, inv_inertia;  ///< In W.
+  S3<Num> inertia, inv_inertia;  ///< Inertia and its inverse, in W.
   Twist<Num> free;               ///< Velocities without the constraints of the island.
   Twist<Num> before;             ///< Velocities at the start of the step.
 };

@@ -17,7 +17,7 @@ struct TimeLawTable {
 
 struct MotionTable {
   int body = 0;
-  double direction[3] = {}, axis[3] = {}, center[3] = {};  ///< In W.
+  double direction[3] = {}, axis[3] = {}, center[3] = {};  ///< Vectors in W.
   double arm[3] = {};  ///< Vector from the center to the body's origin at t = 0.
   TimeLawTable slide, turn;
 };

@@ -48,7 +48,7 @@ struct Rows {
 template <class W>
 struct BodyWork {
   M3<W> R;              ///< Rotation R_WP from frame P to W at the middle of the step.
-  S3<W> inv_inertia;    ///< In W [1/(kg m^2)].
+  S3<W> inv_inertia;    ///< Inverse inertia in W [1/(kg m^2)].
   V3<W> v, w;           ///< Current velocities [m/s], [rad/s].
   V3<W> v0, w0;         ///< Velocities before the forces of this step.
   V3<W> v_mid, w_mid;   ///< Means over the step from the latest velocities, for dampers.
@@ -132,7 +132,7 @@ struct MotionWork {
 template <class W>
 struct MotorWork {
   W direction;       ///< 1: winds in; -1: unwinds; 0: friction holds the rotor.
-  W mean, slows;     ///< Units: [rad/s], [rad/(s N)].
+  W mean, slows;     ///< Coefficients [rad/s], [rad/(s N)].
   W end, end_slows;  ///< The speed at the end of the step is `end` - `end_slows` T.
   W share;  ///< Factor on stiffness and damping of the cable within this step (motor.md, eq. M.9).
   W duty, duty_falls;  ///< The duty is `duty` - `duty_falls` * mean speed. [1], [s/rad]

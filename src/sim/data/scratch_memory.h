@@ -103,7 +103,7 @@ struct JointMemory {
   Row<W> rhs, change;      ///< 6 per body. `rhs` includes kinematic bodies, which do not change.
   Row<W> moved;            ///< Per body: largest displacement of its points [m].
   Row<V3<W>> gained;       ///< Per body: change of angular momentum due to the displacement.
-  Row<W> blocks;           ///< 36 per block.
+  Row<W> blocks;           ///< Matrix blocks, 36 numbers each.
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.joint_body_count;
@@ -144,7 +144,7 @@ struct DualMemory {
   Row<W> diagonal, active;  ///< A and S of the linearized cable laws.
   ImpactRows<W> impacts;
   Row<Twist<W>> v;        ///< Velocities per body.
-  Row<Column> columns;    ///< Sorted by body.
+  Row<Column> columns;    ///< Columns, sorted by body.
   Row<int> first_column;  ///< Index of the first column of each body.
 
   void Take(const View& m, Room& room) noexcept {
@@ -185,10 +185,10 @@ struct PrimalMemory {
   Row<typename TurnFriction<W>::Branch> friction_branches;
   Row<typename CableRow<W>::Branch> cable_branches;
   Row<typename ContactPoint<W, 1>::Branch> contact_branches;
-  Row<W> v, force, x, change;  ///< 6 per body.
-  Row<W> l, u, f;              ///< Per row.
-  Row<W> g;                    ///< Per constraint: rows^2.
-  Row<W> blocks;               ///< 36 per block.
+  Row<W> v, force, x, change;  ///< Vectors with 6 numbers per body.
+  Row<W> l, u, f;              ///< Vectors with one number per row.
+  Row<W> g;                    ///< Per constraint: a matrix of rows^2 numbers.
+  Row<W> blocks;               ///< Matrix blocks, 36 numbers each.
 
   void Take(const View& m, Room& room) noexcept {
     const bool on = m.world_pattern->count > 0;

@@ -31,14 +31,14 @@ struct MotorTable {
   double rise_per_k = 0, rated_c = 0, ambient_c = 0;
   /// Coulomb friction torque, and excess of the static friction torque over it [N m].
   double friction = 0, static_more = 0;
-  double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/rad^2].
+  double inv_stribeck2 = 0;  ///< 1 / (Stribeck speed)^2 [s^2/rad^2].
   double viscous = 0;        ///< Viscous friction [N m s/rad].
   double gear_loss = 0;      ///< Friction of the gear per torque from the cable [1].
   double backlash_m = 0, min_rest_m = 0;
   /// Thermal conductances from winding to housing, and from housing to air.
   double winding_w_per_k = 0, housing_w_per_k = 0;
   double winding_k_per_j = 0, housing_k_per_j = 0;  ///< 1 / heat capacity.
-  double servo_gain = 0, servo_damping = 0;         ///< Units: [1/m], [s/m].
+  double servo_gain = 0, servo_damping = 0;         ///< Gains of the servo [1/m], [s/m].
 };
 
 struct SupplyTable {
@@ -90,7 +90,7 @@ struct FrictionSide {
   bool directed = false;
   bool by_slip = false;  ///< Friction is not given by two constant coefficients.
   double at_rest = 0, sliding = 0;
-  double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/m^2], or 0.
+  double inv_stribeck2 = 0;  ///< 1 / (Stribeck speed)^2 [s^2/m^2], or 0.
   double viscous = 0;        ///< Increase of the coefficient with speed [s/m].
   double forward = 1, backward = 1, sideways = 1;
   double axis_P[3] = {};  ///< Unit vector, if directed.
@@ -233,7 +233,7 @@ struct View {
   int chain_count, span_count, slip_count, chain_link_count;
   const SlipTable* slips;
   bool along_slip;
-  bool has_ground;  ///< Height fields or meshes.
+  bool has_ground;  ///< Whether there are height fields or meshes.
   int kept_count;   ///< Number of caches of near parts (WorldPairTable::kept).
   int motor_count, supply_count;
   const MotorTable* motors;

@@ -11,7 +11,7 @@ template <class Num>
 struct Solid {
   V3<Num> x;        ///< Center of mass of the body in W [m].
   Num mass;         ///< Mass [kg].
-  S3<Num> inertia;  ///< In W [kg m^2].
+  S3<Num> inertia;  ///< Inertia in W [kg m^2].
 };
 
 template <class Num>
