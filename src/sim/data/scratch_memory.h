@@ -175,7 +175,7 @@ struct DualMemory {
 inline constexpr int kMostPrimalBlocks = 1024;
 
 /// Memory to solve all joints, cables and contacts of a world in lanes (world_primal.inl). Empty if
-/// the world is not solved this way, which the model determines.
+/// the model does not allow this solver.
 template <class W>
 struct PrimalMemory {
   Row<Unknown<W>> bodies;

@@ -91,7 +91,7 @@ class Tables final : public Model {
   BlockPattern joint_pattern{};   ///< Pattern of the joint system, stored in the following vectors.
   std::vector<int> joint_slot, joint_below, joint_first_below;
   /// Pattern of the system of all bodies, stored in the following vectors, with the body of each
-  /// number and its inverse. No bodies: the world is not solved by solve/world_primal.inl.
+  /// number and its inverse. Empty if solve/world_primal.inl does not solve the world.
   BlockPattern world_pattern{};
   std::vector<int> world_bodies, world_number;
   std::vector<int> world_slot, world_below, world_first_below;

@@ -254,8 +254,8 @@ struct View {
   const JointRowTable* joint_rows;
   const int *joint_bodies, *joint_number, *hinged;
   const BlockPattern* joint_pattern;
-  /// System of all bodies (solve/world_primal.inl); empty if a world is not solved by it. Body of
-  /// each number, and its inverse.
+  /// System of all bodies (solve/world_primal.inl); empty if that solver is not used. Body of each
+  /// number, and the inverse mapping.
   const BlockPattern* world_pattern;
   const int *world_bodies, *world_number;
   bool joint_loops;

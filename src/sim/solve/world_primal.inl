@@ -1,11 +1,12 @@
 /// Solver for a world with joints whose bodies touch only static geometry: Newton's method in the
 /// velocities of all bodies, in all lanes at once (docs/theory/contact.md, section 5).
 ///
-/// It takes the same steps as the first stage of an island (plain_newton.inl), with one sparse
-/// system for the whole world. The model determines its pattern and elimination order
-/// (compile/world_system.cpp). Lanes with sliding contacts have an unsymmetric matrix. If only some
-/// lanes do, both factorizations are computed, so that no lane depends on the others. Lanes with
-/// rebounds and lanes that do not converge are left to the lane-by-lane solver.
+/// The solver takes the same steps as the first stage of an island (plain_newton.inl), with one
+/// sparse system for the whole world. The model determines the pattern of this system and its
+/// elimination order (compile/world_system.cpp). Lanes with sliding contacts have an unsymmetric
+/// matrix. If only some lanes have such a matrix, both factorizations are computed, so that no lane
+/// depends on the others. Lanes with rebounds and lanes that do not converge are left to the
+/// lane-by-lane solver.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -78,7 +79,7 @@ class WorldPrimal {
       if (m_.joint_rows[i].role != JointRole::kTurnFriction) f(work_.joints[i], i);
     }
   }
-  /// ForEach for all constraints but rows of joints. `row`, `cell`: first row and entry.
+  /// Like ForEach, for all constraints except rows of joints. `row`, `cell`: first row and entry.
   template <class F>
   TAUT_INLINE void ForEachOther(F&& f, int row, int cell) noexcept {
     for (int i = 0; i < m_.turn_friction_count; ++i, row += 3, cell += 9) {
@@ -96,7 +97,8 @@ class WorldPrimal {
   }
   int RowsOfJoints() const noexcept { return m_.joint_row_count - 3 * m_.turn_friction_count; }
 
-  /// Returns the lanes in which a law acts. Laws of cables and contacts include this.
+  /// Returns the lanes in which a law acts. All lanes for cables and contacts, because their laws
+  /// include the condition.
   template <class Law>
   TAUT_INLINE static M Acts(const Law& law) noexcept {
     if constexpr (requires { law.reach; }) {
@@ -168,8 +170,8 @@ class WorldPrimal {
     });
   }
 
-  /// Moves impulses slightly outside of their limits or cones to the boundary. Returns whether one
-  /// of `lanes` has changed.
+  /// Moves impulses slightly outside of their limits or cones to the boundary. Returns whether
+  /// impulses have changed in any of `lanes`.
   bool Clamp(M lanes) noexcept {
     auto changed = M::Splat(false);
     ForEach([&](auto& law, auto&, int row, int) {
@@ -185,7 +187,7 @@ class WorldPrimal {
     return Any(lanes & changed);
   }
 
-  /// v <- v_free + M^-1 J^T l, u <- J v
+  /// Computes velocities v <- v_free + M^-1 J^T l and constraint velocities u <- J v.
   void UpdateVelocities() noexcept {
     for (int k = 0; k < count(); ++k) Bodies::Store(mem_.bodies[k].free, mem_.v + kDofs * k);
     ForEach([&](auto& law, auto&, int row, int) {
@@ -198,7 +200,7 @@ class WorldPrimal {
     });
     ForEach([&](auto& law, auto&, int row, int) { RateBy(law, mem_.v, mem_.u + row); });
   }
-  /// u <- J v of a law
+  /// Computes the constraint velocities u <- J v of a law.
   template <class Law>
   TAUT_INLINE static void RateBy(const Law& law, const W* v, W* u) noexcept {
     for (int r = 0; r < Law::kRows; ++r) u[r] = W::Splat(0.0);
@@ -266,7 +268,8 @@ class WorldPrimal {
     });
   }
 
-  /// x <- (M + J^T G J)^-1 x. A bad pivot spoils the result of its lane, which the residual shows.
+  /// Solves in place: x <- (M + J^T G J)^-1 x. A bad pivot spoils the result of its lane, which the
+  /// residual shows.
   void SolveSystem(bool symmetric) noexcept {
     matrix_.Start(mem_.bodies, symmetric);
     int row = 0;
