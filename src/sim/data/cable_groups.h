@@ -46,7 +46,7 @@ TAUT_INLINE bool OnlyHolds(const View& m, const JointTable& j) noexcept {
 
 /// Groups of a world. Each array has one element per body.
 struct CableGroups {
-  int *group, *size;  ///< Lowest body of the group; size: at the lowest body.
+  int *group, *size;  ///< Lowest body of the group; number of bodies, at the lowest body.
   uint8_t* kind;      ///< Bits of GroupKind, stored at the lowest body.
 
   /// Returns whether the cables of a body are implicit in tension and direction.
