@@ -6,7 +6,7 @@
 
 namespace taut::linear {
 
-const sim::Kernel kKernelDual = {2, sim::ScratchBytes<simd::Dual>,
+const sim::Kernel kKernelDual = {2, sim::ScratchBytes<simd::Dual>, sim::LayOutScratch<simd::Dual>,
                                  sim::StepGroup<simd::Dual, sim::NoWatch>,
                                  sim::SenseGroup<simd::Dual>};
 

@@ -48,10 +48,11 @@ struct StepSettings {
 };
 
 /// Step functions of one instruction set. `scratch`: memory of `scratch_bytes` bytes, aligned to
-/// 64.
+/// 64, which `lay_out` has divided for the model.
 struct Kernel {
   int lanes;
   size_t (*scratch_bytes)(const View&);
+  void (*lay_out)(const View&, void* scratch);
   void (*step)(const View&, const Layout&, Group&, const StepSettings&, void* scratch,
                double step_s, int count);
   void (*sense)(const View&, const Layout&, Group&, void* scratch);

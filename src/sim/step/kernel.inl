@@ -297,10 +297,15 @@ size_t ScratchBytes(const View& m) {
   return Scratch<W>::Bytes(m);
 }
 
+template <class W>
+void LayOutScratch(const View& m, void* scratch) {
+  Scratch<W>::LayOut(m, scratch);
+}
+
 template <class W, class Watch>
 void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
                void* scratch, double step_s, int count) {
-  Scratch<W> work(m, scratch);
+  Scratch<W>& work = Scratch<W>::In(scratch);
   const Rows<W> s(m, layout, g);
   Watch watch;
   const double part_s = step_s / settings.substeps;
@@ -319,7 +324,7 @@ void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings
 
 template <class W>
 void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
-  Scratch<W> work(m, scratch);
+  Scratch<W>& work = Scratch<W>::In(scratch);
   const Rows<W> s(m, layout, g);
   Poison(m, s, g, work);
   StageSenseBodies(m, s, work);
@@ -330,7 +335,7 @@ void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
 
 template <class W, class Watch = NoWatch>
 constexpr Kernel MakeKernel() {
-  return {W::kLanes, ScratchBytes<W>, StepGroup<W, Watch>, SenseGroup<W>};
+  return {W::kLanes, ScratchBytes<W>, LayOutScratch<W>, StepGroup<W, Watch>, SenseGroup<W>};
 }
 
 }  // namespace taut::sim
