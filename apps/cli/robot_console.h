@@ -72,7 +72,8 @@ class RobotConsole {
   /// Returns the motor of a cable; nothing, with an error in `out`, if no motor has this cable.
   std::optional<int> MotorOf(const std::string& cable, Diagnostics& out) const;
   const link::VirtualRobot* virtual_robot() const { return line_->virtual_robot.get(); }
-  /// Returns whether an interrupt or a stop request has arrived; the motors stop.
+  /// Returns whether an interrupt or a stop request has arrived. The driver then stops the motors,
+  /// except after an interrupt of a command that only reads.
   bool stop_asked() const { return stop_asked_; }
   /// Polls for an interrupt or a stop request. Call it where cycles may be absent, as without
   /// an adapter.

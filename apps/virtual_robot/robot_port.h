@@ -1,4 +1,5 @@
-/// Adapter of an emulated robot as a port of the link's driver, in the robot's virtual time.
+/// Port through which the link's driver accesses the adapter of an emulated robot. Its clock is the
+/// robot's virtual time.
 #pragma once
 
 #include "apps/virtual_robot/emulated_robot.h"

@@ -122,8 +122,8 @@ struct TableLayout {
   TextEncoding encoding = TextEncoding::kUtf8;
   std::vector<std::string> ignore;  ///< Patterns with `*` of columns to ignore.
 
-  // Clock: a column in units of `unit_s` [s]; its value `zero` (absent: its first value) becomes 0
-  // s. Without such a column, rows are `row_s` apart.
+  // Clock: a column of times in units of `unit_s` [s]. Time 0 s is at the column's value `zero`, or
+  // at its first value if `zero` is absent. Without a time column, rows are `row_s` apart.
   std::string time_column;
   ClockFormat clock = ClockFormat::kNumber;
   double unit_s = 1.0;

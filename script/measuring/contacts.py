@@ -5,7 +5,7 @@ import os
 import pathlib
 import statistics
 
-from measuring.figures import NOTHING, SETTINGS, count, number
+from measuring.table_text import NOTHING, SETTINGS, count, number
 from measuring import wasm
 from measuring.commands import command
 from measuring.measure import machine

@@ -3,7 +3,7 @@
 import pathlib
 
 from measuring import sections
-from measuring.figures import NOTHING, SETTINGS, number
+from measuring.table_text import NOTHING, SETTINGS, number
 from measuring.results import Results, mark, shared
 from validation.runs import fill, table
 

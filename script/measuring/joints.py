@@ -3,7 +3,7 @@
 import pathlib
 
 from measuring import sections
-from measuring.figures import number
+from measuring.table_text import number
 from measuring.results import mark, shared
 from validation.runs import fill, table
 

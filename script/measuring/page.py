@@ -5,7 +5,7 @@ import statistics
 import textwrap
 
 from measuring import contacts, hills, joints, wasm
-from measuring.figures import NOTHING, SETTINGS, number
+from measuring.table_text import NOTHING, SETTINGS, number
 from measuring.results import Results, mark, shared
 from validation.runs import Problem, fill, table
 

@@ -227,8 +227,9 @@ FreeForm FindFreeForm(const FormNet& net, const std::vector<int>& group, Diagnos
   const std::size_t before = out.items().size();
   if (group.size() != net.members.size()) {
     out.Error("net.wrong_number_of_groups", {},
-              "there are " + std::to_string(group.size()) + " groups for " +
-                  std::to_string(net.members.size()) + " members");
+              "`group` has " + std::to_string(group.size()) + " entries for " +
+                  std::to_string(net.members.size()) + " members",
+              "give the group of each member");
   }
   if (std::find(net.fixed.begin(), net.fixed.end(), true) != net.fixed.end()) {
     out.Error("net.has_fixed_nodes", {}, "FindFreeForm does not support nets with fixed nodes",

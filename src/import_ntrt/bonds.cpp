@@ -85,7 +85,8 @@ void Fit(const Reading& in, int second, const std::vector<NodeOnEdge>& bonds) {
   if (!(Length(first_1) > 0.0) || !(Length(first_2) > 0.0)) {
     in.out.Error("ntrt.bond_in_center", bonds[0].at,
                  "the first node_edge bond lies at the center of all bonds",
-                 "begin with another bond, because the first one gives the direction");
+                 "begin with another bond: the direction from the center to the first bond sets "
+                 "the rotation of the structure");
     return;
   }
   in.model.Turn(second, centre_1, Between(first_2, first_1, normal_1));

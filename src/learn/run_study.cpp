@@ -112,9 +112,9 @@ class StudyRun {
       });
       if (same) return true;
       out.Error("study.other_study", {LogPath(options_.folder)},
-                "the folder contains another study: evaluation " + std::to_string(id) +
+                "another build of taut wrote the folder: evaluation " + std::to_string(id) +
                     " now ends in a different state",
-                "another build of taut wrote it; choose another folder with `--out`");
+                "choose another folder with `--out`");
       return false;
     }
     return true;

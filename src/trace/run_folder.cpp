@@ -83,7 +83,8 @@ struct Piece {
 std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
   std::vector<Piece> pieces;
   const std::string id = IdOfTrace(trace);
-  // A measured trace in a run's folder does not belong to the run, and CSV files contain no id.
+  // In a run's folder, files called trace* and HDF5 files with an id belong to runs. Other traces
+  // there are measured. CSV files contain no id and are not listed.
   const bool named = fs::path(path).filename().string().starts_with("trace");
   if (path.ends_with(".h5") && (named || !id.empty())) {
     pieces.push_back({path, id});

@@ -174,7 +174,7 @@ inline void Tick(const Inputs& in, Board& board) noexcept {
     MotorLoop& motor = board.loops[m];
     Sense(board.parameters.motor[m], in.adc[m], in.encoder[m], motor);
     const uint8_t wrong =
-        Look(board.limits[m], in.adc[m], motor.step, motor.width, board.watches[m]);
+        DetectFaults(board.limits[m], in.adc[m], motor.step, motor.width, board.watches[m]);
     if (wrong != 0 && board.mode != Mode::kOff) board.faults[m] |= wrong;
   }
   internal::React(in.driver_fault, board);

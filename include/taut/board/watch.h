@@ -80,8 +80,8 @@ inline uint8_t InARow(bool so, uint8_t count) noexcept {
 
 /// Returns the faults detected in this tick. `step`: encoder counts since the previous tick;
 /// `width`: duty of the previous tick.
-inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16_t width,
-                    Watch& watch) noexcept {
+inline uint8_t DetectFaults(const WatchLimits& limits, uint16_t adc, int16_t step, int16_t width,
+                            Watch& watch) noexcept {
   uint8_t wrong = 0;
   watch.sensor = internal::InARow(adc <= kSensorLow || adc >= kSensorHigh, watch.sensor);
   if (watch.sensor >= kReadings) wrong |= kSensor;
@@ -119,6 +119,11 @@ inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16
     }
   }
   return wrong;
+}
+[[deprecated("DetectFaults")]] inline uint8_t Look(const WatchLimits& limits, uint16_t adc,
+                                                   int16_t step, int16_t width,
+                                                   Watch& watch) noexcept {
+  return DetectFaults(limits, adc, step, width, watch);
 }
 
 /// Coefficients of the temperature model: the current follows from duty and speed and heats two

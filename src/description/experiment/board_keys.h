@@ -64,7 +64,8 @@ void Keys(Io& io, Boards& b) {
   io("tension_filter_share", b.tension_filter_share, Bound{.least = 0.001, .most = 1},
      "Share of a new reading in the filtered tension (a of eq. K.13).");
   io("rate_filter_share", b.rate_filter_share, Bound{.least = 0.001, .most = 1},
-     "Share of a new encoder step in the filtered rate (a of eq. K.12).");
+     "Weight of the newest tick's change of encoder count in the filtered rate (a of eq. K.12 in "
+     "theory/control.md).");
   io("winding_counts_per_count", b.winding_counts_per_count, gain(10),
      "Load cell counts per encoder count wound in, for the complementary filter of the tension; 0: "
      "low-pass filter.");

@@ -43,8 +43,9 @@ void CheckNetwork(const NetworkSpec& network, const std::string& what, std::size
               what + ".hidden must have 1 to 32 neurons, got " + std::to_string(hidden));
     return;
   }
-  const std::string inputs = what == "cable_network" ? "inputs: stretch, tension"
-                                                     : "inputs: goal_x, goal_y and, if 3, place";
+  const std::string inputs = what == "cable_network"
+                                 ? "inputs: stretch, tension"
+                                 : "inputs: goal_x, goal_y, and optionally place";
   CheckWeights(network.hidden, least_inputs, most_inputs, inputs, at, out);
   const std::size_t first = network.hidden[0].weights.size();
   for (const Neuron& neuron : network.hidden) {

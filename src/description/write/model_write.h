@@ -40,7 +40,8 @@ struct WrittenModel {
   std::vector<int> cables;                      ///< Index of the robot's cable, for each pair after
                                                 ///< the solids.
   std::set<int> pins;                           ///< Joints that follow from `class_k` rods.
-  std::vector<std::vector<std::string>> apart;  ///< Names of the bodies.
+  std::vector<std::vector<std::string>> apart;  ///< Groups of bodies that do not collide with
+                                                ///< each other, by name.
   std::vector<WrittenBuilder> on_pairs, on_nodes;
   std::map<std::string, Quat> turns;  ///< Orientation of each placement that contains boxes.
 };

@@ -29,8 +29,9 @@ void StageMotionPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, W h) n
   }
 }
 
-/// Sets the velocities of kinematic bodies, which StageKinematics sets to zero. The forces on these
-/// bodies are zero until contacts, cables and joints add forces.
+/// Replaces the zero velocities of kinematic bodies from StageKinematics by the prescribed ones,
+/// and zeroes the forces and torques on these bodies, before contacts, cables and joints add
+/// theirs.
 ///   reads   motions[]     writes  bodies[].v0, .w0, .v_mid, .w_mid, .force, .torque
 template <class W>
 void StageMotionStart(const View& m, Scratch<W>& work) noexcept {

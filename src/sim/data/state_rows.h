@@ -70,7 +70,8 @@ struct WrapPointNumbers {
   Num body;   ///< Index of the body or of the world.
   Num angle;  ///< Angle of the cable about the axis, from the previous to the next point [rad].
   Num most;   ///< Largest angle at which the cable does not pass through the shape [rad].
-  /// Half the length; distance from the axis to the center line of the cable [m].
+  /// Half the length of the cylinder around which the cable bends; distance from its axis to the
+  /// center line of the cable [m].
   Num half, radius;
   Num center[3], axis[3];  ///< In frame P [m], [1].
 };

@@ -55,7 +55,8 @@ Vec3 NearestOf(const SurfaceTriangle& t, const Vec3& p) noexcept {
     const double share = (d4 - d3) / ((d4 - d3) + (d5 - d6));
     return t.p[1] + share * (t.p[2] - t.p[1]);
   }
-  // Computed from the plane instead of the corner, the direction is as accurate as the normal.
+  // The nearest point is computed from p along the normal, not from a corner along the edges, so
+  // the direction from it to p is as accurate as the normal.
   const Vec3 n = Cross(ab, ac);
   return p - (Dot(n, ap) / Dot(n, n)) * n;
 }
@@ -149,7 +150,8 @@ class PlaceSearch {
       if (within >= 0.0) continue;
       if (within * within > slack2 * Dot(edge, edge)) return;
     }
-    // Computed from the plane instead of a corner, the direction is as accurate as the normal.
+    // The nearest point is computed from the point along the normal, not from a corner along the
+    // edges, so the direction between both points is as accurate as the normal.
     const double length = Sqrt(n2), height = at / length;
     // The solid is behind its faces.
     if (solid_ && height < -kCoincidentM) return;

@@ -232,10 +232,12 @@ void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge
 
 }  // namespace detail
 
-/// Visits all sharp edges and corners within reach of a line, and possibly some nearby ones:
-/// `use_edge(stretch, from, to, edge)`, where edge() returns the complete edge, and
-/// `use_corner(stretch, corner, each_beside)`. Each one within reach of a segment is visited once
-/// with this segment, and possibly again with others.
+/// Visits all sharp edges and corners within reach of a line, and possibly some others near it.
+/// For an edge, calls `use_edge(stretch, from, to, edge)`; `edge()` returns the complete edge. For
+/// a corner, calls `use_corner(stretch, corner, each_beside)`; `each_beside(use)` calls `use` with
+/// each corner at the other end of an edge of this corner. `stretch` is a segment of the line. Each
+/// edge or corner within reach of a segment is visited once with this segment, and possibly again
+/// with other segments.
 template <class UseEdge, class UseCorner>
 void EachSharp(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
                const UseCorner& use_corner) noexcept {

@@ -353,7 +353,8 @@ TAUT_INLINE MaskOf<W> EndedDamped(const View& m, const Scratch<W>& work,
   return work.implicit.bodies[body] > W::Splat(1.0);
 }
 
-/// Computes loads and angular momenta from the impulses of the solver.
+/// Computes the loads of joints from the solver's impulses, and adds these impulses to the angular
+/// momenta of the bodies.
 template <class W>
 void FinishJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0), inv_h = W::Splat(1.0 / step_s);

@@ -85,9 +85,10 @@ void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   }
 }
 
-/// Applies arcs (12a) and common motions (12b) to biases of contacts with the world. Bodies that
-/// touch moving bodies are excluded, because such biases would be inconsistent around a loop of
-/// bodies and leave heaps unsolved.
+/// Corrects the biases of contacts with the world (docs/theory/contact.md): for sticking along arcs
+/// (eq. 12a), and for jammed bodies (eq. 12b). Bodies that touch moving bodies are excluded:
+/// corrected biases would be inconsistent around a loop of bodies, and the solver would not
+/// converge for heaps.
 template <class W, class M>
 void FinishWorldBiases(const View& m, const Rows<W>& s, Scratch<W>& work, M tied,
                        double step_s) noexcept {

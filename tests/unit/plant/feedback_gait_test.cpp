@@ -94,8 +94,8 @@ TEST_F(FeedbackGait, AResolvedExperimentHasItAndItsGoal) {
 
 TEST_F(FeedbackGait, WrongNetworksAreAnswered) {
   Expect("[2, 0, 0.5]", "[2, 0, 0.5, 1]",
-         "17:9: error: neuron h1 has 4 weights, but there are 2 or 3 inputs: goal_x, goal_y and, "
-         "if 3, place");
+         "17:9: error: neuron h1 has 4 weights, but there are 2 or 3 inputs: goal_x, goal_y, and "
+         "optionally place");
   Expect("[0, 3, 0]", "[0, 3]",
          "18:9: error: goal_network: neuron h2 has 2 weights, but h1 has 3 (all hidden neurons "
          "must have the same inputs)");
