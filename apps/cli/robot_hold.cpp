@@ -148,14 +148,12 @@ int Estop(const RobotArguments& args, int boards) {
 
 int Log(const HoldArguments& args) {
   Diagnostics found;
-  const auto folder = RunFolder::Open(args.out, {"events.jsonl"}, found);
+  const auto folder = RunFolder::Open(args.out, {}, found);
   if (!folder) return Fail(found, kFailed);
   int exit = kOk;
   const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
-  if (!folder->Begin(found)) return Fail(found, kFailed);
-  const std::string trace = folder->Path("trace.h5");
-  const auto recording = RobotRecording::Start(trace, folder->Path("events.jsonl"), desk->cables(),
+  const auto recording = RobotRecording::Start(*folder, desk->cables(),
                                                {{"taut_version", kVersion},
                                                 {"model", desk->robot().def.name},
                                                 {kRunIdKey, folder->id()},
@@ -180,7 +178,7 @@ int Log(const HoldArguments& args) {
   desk->on_cycle = {};
   desk->on_event = {};
   if (!recording->Finish(found)) return Fail(found, kFailed);
-  fmt::print("{} rows: {}\n", recording->rows(), trace);
+  fmt::print("{} rows: {}\n", recording->rows(), folder->Path("trace.h5"));
   return desk->stop_asked() ? desk->stop_exit() : kOk;
 }
 

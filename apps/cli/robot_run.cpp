@@ -88,13 +88,12 @@ int RunOn(RobotConsole& desk, const RunArguments& args, const ExperimentSpec& ex
   // Boards time out after 0.1 s without a command. Slow work therefore precedes the first step,
   // which powers the motors, or runs in another thread.
   const std::vector<ChannelInfo> channels = RunChannels(experiment, &plant);
-  auto trace = CreateHdf5Trace(folder.Path("trace.h5"), channels, metadata, found);
-  if (!trace || !folder.Prepare(ResolvedYaml(experiment), found) || !folder.Begin(found)) {
-    return Fail(found, kFailed);
-  }
-  const auto recording = RobotRecording::Start(folder.Path("host.h5"), folder.Path("events.jsonl"),
-                                               desk.cables(), metadata, found);
+  if (!folder.Prepare(ResolvedYaml(experiment), found)) return Fail(found, kFailed);
+  const auto recording = RobotRecording::StartHost(folder, desk.cables(), metadata, found);
   if (!recording) return Fail(found, kFailed);
+  auto trace = CreateHdf5Trace(folder.Path("trace.h5"), channels, metadata, found);
+  if (!trace) return Fail(found, kFailed);
+  trace = recording->Announcing(folder.BeginWith(std::move(trace), {"trace.h5"}), "trace.h5");
   trace = WriteBehind(std::move(trace), channels.size());
   const bool terminal = isatty(STDERR_FILENO) == 1;
   double shown_s = 0;
@@ -131,6 +130,7 @@ int RunOn(RobotConsole& desk, const RunArguments& args, const ExperimentSpec& ex
   desk.on_cycle = {};
   const bool off = desk.End();
   desk.on_event = {};
+  trace.reset();  // so that the recording knows whether the run has begun
   recording->Finish(found);
   if (!summary || !found.ok()) return Fail(found, kFailed);
   summary->run = folder.id();
@@ -170,7 +170,7 @@ int Run(RunArguments args) {
     return kOk;
   }
   if (args.out.empty()) args.out = "runs/" + experiment->name + "_on_robot";
-  const auto folder = RunFolder::Open(args.out, {"host.h5", "events.jsonl"}, found);
+  const auto folder = RunFolder::Open(args.out, {}, found);
   if (!folder) return Fail(found, kFailed);
   int exit = kOk;
   const auto desk = RobotConsole::Open(args, &*experiment, exit);

@@ -30,12 +30,11 @@ class FolderRecorder final : public viewer::RobotRecorder {
 
   std::string Begin(double time_s, std::string& why) override {
     Diagnostics found;
-    folder_ = RunFolder::Open(NextFolder(), {"events.jsonl"}, found);
-    if (folder_ && folder_->Begin(found)) {
+    folder_ = RunFolder::Open(NextFolder(), {}, found);
+    if (folder_) {
       TraceMetadata metadata = metadata_;
       metadata.emplace_back(kRunIdKey, folder_->id());
-      recording_ = RobotRecording::Start(folder_->Path("trace.h5"), folder_->Path("events.jsonl"),
-                                         cables_, metadata, found);
+      recording_ = RobotRecording::Start(*folder_, cables_, metadata, found);
     }
     if (!recording_) {
       why = found.Format();

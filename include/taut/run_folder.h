@@ -50,13 +50,13 @@ class RunFolder {
   const std::string& id() const { return id_; }
   std::string Path(const std::string& name) const;
 
-  /// Writes the text of the experiment to a temporary file on the disk. Returns false and adds an
-  /// error if there is no space; the previous run then remains complete.
+  /// Writes the text of the experiment to a temporary file on the disk; empty for a run without an
+  /// experiment. Returns false, with an error, without space; the previous run remains complete.
   bool Prepare(const std::string& experiment, Diagnostics& out);
 
   /// Begins the run. Removes the files of the previous run, the summary first, except `traces`,
-  /// which already belong to this run. Then publishes inputs.yaml if it was prepared; logs of a
-  /// robot have no inputs.yaml. On failure, returns false and adds an error.
+  /// which already belong to this run. Then publishes inputs.yaml, except for runs without an
+  /// experiment, such as logs of a robot. On failure, returns false and adds an error.
   bool Begin(Diagnostics& out, const std::vector<std::string>& traces = {});
 
   /// Returns a writer that begins the run when `last` has its first row, so that the previous run

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* kInputs = "inputs.yaml";
 constexpr const char* kSummary = "summary.json";
 /// Files of a run, in the order in which a new run removes them.
-constexpr const char* kPieces[] = {kSummary,    "report.html", "events.jsonl",
+constexpr const char* kPieces[] = {kSummary,    "report.html", "events.jsonl", "host.h5",
                                    "trace.csv", "trace.h5",    kInputs};
 constexpr std::string_view kIdLine = "# run ";
 
@@ -121,21 +121,27 @@ std::optional<std::string> PathOfRun(const std::vector<Piece>& pieces, const std
   return at == pieces.end() ? std::nullopt : std::optional(at->path);
 }
 
+/// Returns whether inputs, such as those before their publication, contain an experiment. Those of
+/// a robot's log only contain the id.
+bool HasExperiment(const std::string& inputs) {
+  const auto text = ReadRunText(inputs);
+  return !text || *text != InputsOfRun(IdOfInputs(*text), "");
+}
+
 /// Completes the replacement of a run, if the writer of this trace began one. The caller must hold
 /// the folder's lock.
 bool FinishReplacement(const std::string& trace, const std::string& unnamed) {
   const fs::path path(trace);
+  const bool has_experiment = HasExperiment(unnamed);
+  std::vector<std::string> kept{"trace.h5"};
+  if (has_experiment) kept.push_back(kInputs);
   Diagnostics ignored;
   if (path.filename() == "trace.h5" &&
-      !RemoveRunBefore(path.parent_path().string(), {kInputs, "trace.h5"}, ignored)) {
+      !RemoveRunBefore(path.parent_path().string(), kept, ignored)) {
     return false;
   }
+  if (!has_experiment) return unlink(unnamed.c_str()) == 0;
   return std::rename(unnamed.c_str(), BesideTrace(trace, "inputs", ".yaml").c_str()) == 0;
-}
-
-bool AreOfOneRun(const std::vector<Piece>& pieces) {
-  return std::all_of(pieces.begin(), pieces.end(),
-                     [&](const Piece& piece) { return piece.id == pieces.front().id; });
 }
 
 /// Returns the files of a trace's run. If its writer was killed while it replaced another run,
@@ -143,18 +149,14 @@ bool AreOfOneRun(const std::vector<Piece>& pieces) {
 std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace) {
   constexpr int kLooks = 50;
   constexpr std::chrono::milliseconds kBetween{20};
-  std::vector<Piece> pieces = PiecesOfRun(path, trace);
-  for (int look = 0; look < kLooks && !AreOfOneRun(pieces); ++look) {
+  for (int look = 0; look < kLooks; ++look) {
     const auto unnamed = PathOfRun(UnnamedInputs(path), IdOfTrace(trace));
-    if (unnamed) {
-      Diagnostics ignored;
-      const auto lock = FolderLock::Take(FolderOf(path), ignored);
-      if (!lock || !FinishReplacement(path, *unnamed)) std::this_thread::sleep_for(kBetween);
-    }
-    pieces = PiecesOfRun(path, trace);
     if (!unnamed) break;  // no interrupted replacement, or a writer has just completed it
+    Diagnostics ignored;
+    const auto lock = FolderLock::Take(FolderOf(path), ignored);
+    if (!lock || !FinishReplacement(path, *unnamed)) std::this_thread::sleep_for(kBetween);
   }
-  return pieces;
+  return PiecesOfRun(path, trace);
 }
 
 /// Completes an interrupted replacement in a folder. The caller must hold the folder's lock.
@@ -273,13 +275,15 @@ std::unique_ptr<TraceWriter> RunFolder::BeginWith(std::unique_ptr<TraceWriter> l
 }
 
 bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) {
+  const bool has_experiment = inputs_ && HasExperiment(inputs_->made_at());
   if (inputs_) inputs_->Leave();  // after an error below, the next reader completes the replacement
   std::vector<std::string> replaced = traces;
-  if (inputs_) replaced.push_back(kInputs);
+  if (has_experiment) replaced.push_back(kInputs);
   if (!RemoveRunBefore(folder_, replaced, out)) return false;
   for (const std::string& name : more_) {
     if (!RemoveOld(Path(name), out)) return false;
   }
+  if (inputs_ && !has_experiment) return RemoveOld(inputs_->made_at(), out);
   if (!inputs_ || inputs_->Publish()) return true;
   out.Error("file.not_writable", {Path(kInputs)}, "cannot write: " + inputs_->why());
   return false;

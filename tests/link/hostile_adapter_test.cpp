@@ -3,8 +3,12 @@
 
 #include "link/hostile_adapter.h"
 
+#include <sys/resource.h>
+
 #include <chrono>
 
+#include "taut/files.h"
+#include "taut/run_folder.h"
 #include "tests/system/taut_command.h"
 
 namespace taut::test {
@@ -23,12 +27,16 @@ constexpr int kFrames = 30;
 class HostileRobot : public CommandTest {
  protected:
   pid_t StartRobot(const HostileAdapter& adapter, std::vector<std::string> words,
-                   const std::string& runtime = "runtime") {
+                   const std::string& runtime = "runtime",
+                   const std::function<void()>& before = {}) {
     words.insert(words.begin(), "robot");
     words.insert(words.end(), {"--port", adapter.device()});
     const std::string folder = Path(runtime);
     std::filesystem::create_directories(folder);
-    return Start(words, [&] { setenv("XDG_RUNTIME_DIR", folder.c_str(), 1); });
+    return Start(words, [&] {
+      setenv("XDG_RUNTIME_DIR", folder.c_str(), 1);
+      if (before) before();
+    });
   }
   CommandResult Robot(const HostileAdapter& adapter, std::vector<std::string> words,
                       const std::string& runtime = "runtime") {
@@ -184,6 +192,93 @@ INSTANTIATE_TEST_SUITE_P(
                         RobotCommand{{"set", "duty_limit=0.5"}},
                         RobotCommand{{"selftest", "--move"}}, RobotCommand{{"estop"}}),
         testing::Values(Hostility::kSilent, Hostility::kUnplugged), testing::Bool()));
+
+/// Recordings that replace a finished run of the robot in the same folder.
+class ReplacedRobotRun : public HostileRobot {
+ protected:
+  const std::vector<std::vector<std::string>> recording_{
+      {"log", "--quiet", "--duration_s", "0.3", "--out", "one"},
+      {"run", "drive.yaml", "--quiet", "--out", "one"}};
+
+  /// Leaves a finished run in the folder `one`.
+  void FinishRun(const HostileAdapter& adapter) {
+    Write("drive.yaml",
+          "taut: 1\nkind: experiment\nname: drive\nduration_s: 0.3\nbase: " TAUT_SOURCE_DIR
+          "/share/experiments/push_20n_motors.yaml\n"
+          "timeline: {phases: {before: [0, 0.1], during: [0.1, 0.2], after: [0.2, 0.3]}}\n");
+    CommandResult done;
+    for (int tries = 0; tries < kTries && done.status != 0; ++tries) {
+      if (Robot(adapter, {"reference", "--as_model"}).status == 0) {
+        done = Robot(adapter, recording_.back());
+      }
+    }
+    EXPECT_EQ(done.status, 0) << done.errors;
+    EXPECT_TRUE(std::filesystem::exists(Path("one/host.h5")));
+  }
+  std::vector<std::string> Names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(Path("one"))) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+};
+
+TEST_F(ReplacedRobotRun, IsTheOldOrTheNewAfterAKill) {
+  for (const std::vector<std::string>& words : recording_) {
+    bool replaced = false;
+    for (int tries = 0; tries < kTries && !replaced; ++tries) {
+      std::filesystem::remove_all(Path("one"));
+      HostileAdapter adapter(Hostility::kNone);
+      FinishRun(adapter);
+      const std::string trace = Path("one/trace.h5");
+      const FileIdentity before = IdentityOf(trace);
+      const pid_t robot = StartRobot(adapter, words);
+      while (IdentityOf(trace) == before && !HasEnded(robot)) {
+        std::this_thread::sleep_for(std::chrono::microseconds(50));
+      }
+      kill(robot, SIGKILL);
+      replaced = End(robot).status == 128 + SIGKILL;
+      Diagnostics found;
+      const auto read = ReadTraceOfRun(Path("one"), found);
+      ASSERT_TRUE(read) << words[0] << ": " << found.Format();
+      EXPECT_GE(read->time_s.size(), 1u);
+      const bool has_experiment = std::filesystem::exists(Path("one/inputs.yaml"));
+      EXPECT_EQ(has_experiment, words[0] == "run");
+      EXPECT_FALSE(std::filesystem::exists(Path("one/summary.json")));
+    }
+    EXPECT_TRUE(replaced) << words[0];
+  }
+}
+
+TEST_F(ReplacedRobotRun, IsTheOldIfTheNewCannotBegin) {
+  HostileAdapter adapter(Hostility::kNone);
+  FinishRun(adapter);
+  const std::vector<std::string> names = Names();
+  const FileIdentity before = IdentityOf(Path("one/trace.h5"));
+  for (const std::vector<std::string>& words : recording_) {
+    const CommandResult full = End(StartRobot(adapter, words, "runtime", [] {
+      const rlimit size{1000, 1000};  // acts like a full disk
+      setrlimit(RLIMIT_FSIZE, &size);
+    }));
+    EXPECT_EQ(full.status, 1) << full.errors;
+    EXPECT_EQ(Names(), names) << words[0];
+    EXPECT_TRUE(IdentityOf(Path("one/trace.h5")) == before);
+  }
+}
+
+TEST_F(ReplacedRobotRun, IsGoneAfterTheNewOne) {
+  HostileAdapter adapter(Hostility::kNone);
+  FinishRun(adapter);
+  const std::string events = Read(Path("one/events.jsonl"));
+  EXPECT_NE(events, "");
+  const FileIdentity before = IdentityOf(Path("one/trace.h5"));
+  const CommandResult done = Robot(adapter, recording_.front());
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_FALSE(IdentityOf(Path("one/trace.h5")) == before);
+  EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "events.jsonl", "trace.h5"}));
+}
 
 TEST_F(HostileRobot, OneProgramDrivesWhateverTheRuntimeFolder) {
   HostileAdapter adapter(Hostility::kNone);

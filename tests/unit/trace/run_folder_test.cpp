@@ -155,6 +155,22 @@ TEST_F(KilledRun, IsFinishedByTheNextOneWhichMayFailToBegin) {
   EXPECT_EQ(InputsId(), "new");
 }
 
+TEST_F(KilledRun, WithoutInputsIsReadWhereverItWasKilledAndNothingOldIsLeft) {
+  for (const char* const last_old : {"summary.json", "events.jsonl", "host.h5", "inputs.yaml"}) {
+    WriteTrace("trace.h5", "new");
+    WriteInputs("inputs.yaml", "old");
+    WriteFile("inputs.yaml.77.part", InputsOfRun("new", ""));
+    WriteFile(last_old, std::string(last_old) == "inputs.yaml" ? InputsOfRun("old", "") : "{}");
+    EXPECT_EQ(Read("trace.h5"), "") << last_old;
+    EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "trace.h5"})) << last_old;
+  }
+  // A log replaced a log.
+  WriteFile("events.jsonl", "old");
+  WriteFile("inputs.yaml.77.part", InputsOfRun("new", ""));
+  EXPECT_EQ(Read("trace.h5"), "");
+  EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "trace.h5"}));
+}
+
 TEST_F(KilledRun, LeavesTheOldOneWholeIfItHadNoRow) {
   Leave(0, "old");
   EXPECT_EQ(Read("trace.h5"), "");
@@ -198,6 +214,21 @@ TEST_F(Run, TheFirstRowOfTheLastTraceBeginsIt) {
   EXPECT_TRUE(fs::exists(Path("summary.json")));
   ASSERT_TRUE(AppendRow(*trace, 0, 1, 0.0)) << trace->error();
   EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "inputs.yaml", "trace.h5"}));
+  EXPECT_TRUE(trace->Finish()) << trace->error();
+}
+
+TEST_F(Run, WithoutAnExperimentHasNoInputs) {
+  for (const char* const name : {"trace.h5", "inputs.yaml", "summary.json", "host.h5"}) {
+    WriteFile(name, "old");
+  }
+  Diagnostics out;
+  const auto folder = RunFolder::Open(Path(""), {}, out);
+  ASSERT_TRUE(folder && folder->Prepare("", out)) << out.Format();
+  const auto trace =
+      folder->BeginWith(CreateHdf5Trace(Path("trace.h5"), Channels(1), {}, out), {"trace.h5"});
+  EXPECT_EQ(ReadFile(Path("inputs.yaml")), "old");
+  ASSERT_TRUE(AppendRow(*trace, 0, 1, 0.0)) << trace->error();
+  EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "trace.h5"}));
   EXPECT_TRUE(trace->Finish()) << trace->error();
 }
 
