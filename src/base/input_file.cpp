@@ -1,11 +1,13 @@
 #include "base/input_file.h"
 
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
+#include "base/open_input.h"
 #include "taut/shipped.h"
 
 namespace taut::base {
@@ -17,7 +19,7 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
     return std::nullopt;
   };
   const auto unreadable = [&](std::string what, int error) {
-    out.Unreadable("file.not_readable", {path, 0, 0}, std::move(what) + std::strerror(error),
+    out.Unreadable("file.not_readable", {path, 0, 0}, std::move(what) + OpenError(error),
                    named_by == NamedBy::kUser && error == ENOENT ? SimilarInput(path) : "");
     return std::nullopt;
   };
@@ -38,14 +40,15 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
   } else if (named_by == NamedBy::kFile && std::filesystem::exists(path, ignored)) {
     return refuse("the path is a pipe, socket or device (expected a regular file)");
   }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return unreadable("cannot open: ", errno);
+  const OpenFile file = OpenToRead(path);
+  if (!file) return unreadable("cannot open: ", errno);
   std::string text;
-  for (std::array<char, 65536> chunk; in && text.size() <= most_bytes;) {
-    errno = 0;
-    in.read(chunk.data(), chunk.size());
-    if (in.bad()) return unreadable("cannot read: ", errno != 0 ? errno : EIO);
-    text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
+  for (std::array<char, 65536> chunk; text.size() <= most_bytes;) {
+    const ssize_t count = read(file.get(), chunk.data(), chunk.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return unreadable("cannot read: ", errno);
+    if (count == 0) break;
+    text.append(chunk.data(), static_cast<std::size_t>(count));
   }
   if (text.size() <= most_bytes) return text;
   return size_limit();

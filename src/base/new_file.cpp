@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/open_input.h"
 #include "taut/files.h"
 
 namespace taut {
@@ -63,8 +64,10 @@ bool NewFile::Create() {
   if (IsDevice(path_)) {
     made_at_ = path_;
     published_ = true;
-    descriptor_ = open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
-    return descriptor_ >= 0 || Fail();
+    descriptor_ = base::OpenToAppend(path_).Release();
+    if (descriptor_ >= 0) return true;
+    why_ = base::OpenError(errno);
+    return false;
   }
   const std::string name = path_ + "." + std::to_string(getpid());
   for (int i = 1; descriptor_ < 0; ++i) {

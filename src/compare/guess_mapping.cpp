@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -320,6 +321,16 @@ class Guess {
 
 std::optional<GuessedMapping> GuessMapping(const std::string& path, const RobotNames& robot,
                                            Diagnostics& out) {
+  std::error_code ignored;
+  const auto type = std::filesystem::status(path, ignored).type();
+  if (std::filesystem::exists(std::filesystem::file_status(type)) &&
+      type != std::filesystem::file_type::regular &&
+      type != std::filesystem::file_type::directory) {
+    out.Error("file.not_regular", {path},
+              "the log is a pipe, socket or device, but it is read twice",
+              "save it to a file first");
+    return std::nullopt;
+  }
   const auto form = RecognizeLog(path, out);
   if (!form) return std::nullopt;
   return Guess(*form, robot).Make(path);

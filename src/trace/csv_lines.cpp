@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <memory>
 
+#include "base/open_input.h"
 #include "trace/text_encoding.h"
 #include "trace/unpack_limit.h"
 
@@ -18,14 +20,15 @@ namespace {
 constexpr std::size_t kMaxLineBytes = 8 << 20;
 
 /// Returns the reason why reading ended; empty at the end of the file.
-std::string WhyItEnds(gzFile file, const std::string& path) {
+std::string WhyItEnds(gzFile file) {
   int code = 0;
   std::string_view why = gzerror(file, &code);
   if (code == Z_OK || code == Z_STREAM_END) return {};
   if (code == Z_ERRNO) return fmt::format("cannot read: {}", std::strerror(errno));
   if (code == Z_BUF_ERROR)
     return "the file is truncated after this line: its compressed data is incomplete";
-  if (why.starts_with(path + ": ")) why.remove_prefix(path.size() + 2);
+  // zlib begins with "<fd:4>: ", in place of a path.
+  if (why.starts_with("<fd:")) why.remove_prefix(std::min(why.find(' ') + 1, why.size()));
   return fmt::format("the file is damaged after this line: {}", why);
 }
 
@@ -40,7 +43,7 @@ bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
   for (;;) {
     const int count = gzread(file, block, sizeof block);
     if (count <= 0) {
-      const std::string why = WhyItEnds(file, path);
+      const std::string why = WhyItEnds(file);
       if (why.empty()) {
         to_utf8.Append({}, text);
         if (tail == CsvTail::kLine && !text.empty()) use(text);
@@ -81,11 +84,14 @@ std::string_view Trim(std::string_view text) {
 bool ReadCsvLines(const std::string& path, CsvTail tail,
                   const std::function<bool(std::string_view)>& use, Diagnostics& out,
                   TextEncoding encoding) {
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  base::OpenFile opened = base::OpenToRead(path);
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(
+      opened ? gzdopen(opened.get(), "rb") : nullptr, gzclose);
   if (file == nullptr) {
-    out.Error("file.not_readable", {path}, fmt::format("cannot open: {}", std::strerror(errno)));
+    out.Error("file.not_readable", {path}, "cannot open: " + base::OpenError(errno));
     return false;
   }
+  opened.Release();  // closed with `file`
   struct stat info {};
   const double bytes = stat(path.c_str(), &info) == 0 ? static_cast<double>(info.st_size) : 0.0;
   return ReadLines(file.get(), bytes, tail, use, path, encoding, out);

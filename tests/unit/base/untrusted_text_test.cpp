@@ -5,12 +5,15 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "base/input_file.h"
 #include "taut/diagnostics.h"
+#include "taut/files.h"
 
 namespace taut::test {
 namespace {
@@ -101,6 +104,50 @@ TEST_F(InputFile, AUserMayNameAPipe) {
   const auto text = base::ReadInputFile("/dev/null", 10, "", out, base::NamedBy::kUser);
   ASSERT_TRUE(text) << out.Format();
   EXPECT_EQ(*text, "");
+}
+
+TEST_F(InputFile, APipeWithoutAWriterIsAnError) {
+  const std::string pipe = folder_ + "/pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  Diagnostics out;
+  EXPECT_FALSE(base::ReadInputFile(pipe, 10, "", out, base::NamedBy::kUser));
+  EXPECT_EQ(out.Format(),
+            pipe + ": error: cannot open: no other program has opened this pipe within 5 s\n");
+  Diagnostics written;
+  EXPECT_FALSE(WriteWholeFile(pipe, "text", written));
+  EXPECT_EQ(written.Format(),
+            pipe + ": error: cannot write: no other program has opened this pipe within 5 s\n");
+}
+
+TEST_F(InputFile, TheWriterOfAPipeMayBeLateAndSlow) {
+  const std::string pipe = folder_ + "/pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::ofstream file(pipe);
+    for (const char* const part : {"a slow ", "writer"}) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      file << part << std::flush;
+    }
+  });
+  Diagnostics out;
+  const auto text = base::ReadInputFile(pipe, 100, "", out, base::NamedBy::kUser);
+  writer.join();
+  ASSERT_TRUE(text) << out.Format();
+  EXPECT_EQ(*text, "a slow writer");
+}
+
+TEST_F(InputFile, AnAnonymousPipeIsReadToItsEnd) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);  // an anonymous pipe, as of a shell's <(...)
+  ASSERT_EQ(write(ends[1], "text", 4), 4);
+  close(ends[1]);
+  Diagnostics out;
+  const auto text =
+      base::ReadInputFile("/dev/fd/" + std::to_string(ends[0]), 10, "", out, base::NamedBy::kUser);
+  close(ends[0]);
+  ASSERT_TRUE(text) << out.Format();
+  EXPECT_EQ(*text, "text");
 }
 
 TEST_F(InputFile, TooLargeAFileIsRefusedBeforeItIsRead) {
