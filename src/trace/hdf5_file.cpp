@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "trace/hdf5_links.h"
 #include "trace/unpack_limit.h"
 
 namespace taut::trace {
@@ -81,11 +82,6 @@ TraceMetadata ReadMetadata(hid_t file) {
   return metadata;
 }
 
-struct Walk {
-  Hdf5File& found;
-  std::string& error;
-};
-
 /// Returns the reason why a dataset is not a column of a trace; empty if it is one. Checks its
 /// layout first, since other calls could make HDF5 open another file. A trace must be a single
 /// file.
@@ -119,42 +115,40 @@ std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
 }
 
 /// Adds the dataset of a link. Skips soft links, since the dataset also has a hard link.
-herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* context) {
-  const Walk& walk = *static_cast<Walk*>(context);
-  if (link->type == H5L_TYPE_SOFT) return 0;
-  if (link->type != H5L_TYPE_HARD) {
-    walk.error = fmt::format("/{} is a link to another file; a trace must be a single file", name);
-    return -1;
+Hdf5Visit AddColumn(Hdf5Link& link, Hdf5File& found, std::string& error) {
+  const auto fail = [&](std::string why) {
+    error = std::move(why);
+    return Hdf5Visit::kFail;
+  };
+  if (link.type == H5L_TYPE_SOFT) return Hdf5Visit::kContinue;
+  if (link.type != H5L_TYPE_HARD) {
+    return fail(
+        fmt::format("/{} is a link to another file; a trace must be a single file", link.path));
   }
-  Hdf5Id object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
-  if (!object) return -1;
-  if (H5Iget_type(object) == H5I_GROUP) return 0;
+  if (H5Iget_type(link.object) == H5I_GROUP) return Hdf5Visit::kContinue;
 
   Hdf5Column column;
-  column.name = name;
-  const std::string why =
-      H5Iget_type(object) == H5I_DATASET ? WhyNoColumn(object, column) : "is not a dataset";
-  if (!why.empty()) {
-    walk.error = fmt::format("/{} {}", name, why);
-    return -1;
-  }
-  const std::optional<std::string> unit = TextAttribute(object, "unit");
-  const std::optional<int> place = NumberAttribute(object, "column");
+  column.name = link.path;
+  const std::string why = H5Iget_type(link.object) == H5I_DATASET ? WhyNoColumn(link.object, column)
+                                                                  : "is not a dataset";
+  if (!why.empty()) return fail(fmt::format("/{} {}", link.path, why));
+  const std::optional<std::string> unit = TextAttribute(link.object, "unit");
+  const std::optional<int> place = NumberAttribute(link.object, "column");
   // A missing attribute is valid, but an attribute that cannot be read is an error.
-  if ((!unit && H5Aexists(object, "unit") != 0) || (!place && H5Aexists(object, "column") != 0)) {
-    walk.error = fmt::format(
-        "the trace is damaged: the unit or the column number of /{} cannot be read", name);
-    return -1;
+  if ((!unit && H5Aexists(link.object, "unit") != 0) ||
+      (!place && H5Aexists(link.object, "column") != 0)) {
+    return fail(fmt::format(
+        "the trace is damaged: the unit or the column number of /{} cannot be read", link.path));
   }
   column.unit = unit.value_or("1");
   column.place = place.value_or(INT_MAX);
-  column.dataset = std::move(object);
+  column.dataset = std::move(link.object);
   if (column.name == "time_s") {
-    walk.found.time = std::move(column);
+    found.time = std::move(column);
   } else {
-    walk.found.channels.push_back(std::move(column));
+    found.channels.push_back(std::move(column));
   }
-  return 0;
+  return Hdf5Visit::kContinue;
 }
 
 /// Returns all columns, time first.
@@ -244,8 +238,8 @@ std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& erro
     return std::nullopt;
   }
   trace.metadata = ReadMetadata(trace.file);
-  Walk walk{trace, error};
-  if (H5Lvisit(trace.file, H5_INDEX_NAME, H5_ITER_INC, AddColumn, &walk) < 0) {
+  const auto visit = [&](Hdf5Link& link) { return AddColumn(link, trace, error); };
+  if (!VisitLinks(trace.file, visit, error)) {
     if (error.empty()) error = fmt::format("the trace is damaged: {}", quiet.why());
     return std::nullopt;
   }

@@ -12,7 +12,7 @@
 
 #include "base/input_file.h"
 #include "trace/child_process.h"
-#include "trace/hdf5.h"
+#include "trace/hdf5_links.h"
 #include "trace/table_budget.h"
 
 namespace taut::trace {
@@ -94,21 +94,22 @@ bool ReadOne(hid_t set, MatWalk& walk, MatVariable& into) {
   return false;
 }
 
-herr_t VisitVariable(hid_t group, const char* name, const H5L_info_t* link, void* context) {
-  MatWalk& walk = *static_cast<MatWalk*>(context);
+Hdf5Visit VisitVariable(Hdf5Link& link, MatWalk& walk) {
   // "#refs#" and "#subsystem#" contain the parts of cells and objects.
-  if (link->type != H5L_TYPE_HARD || name[0] == '#') return 0;
-  const Hdf5Id object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
-  if (!object || H5Iget_type(object) != H5I_DATASET) return object ? 0 : -1;
-  if (walk.found.size() >= kMostVariables) return 0;
+  if (link.type != H5L_TYPE_HARD || link.path[0] == '#') return Hdf5Visit::kSkipGroup;
+  if (H5Iget_type(link.object) != H5I_DATASET) {
+    // Names below this group would be longer than any that is read.
+    return link.path.size() < kMostTextBytes ? Hdf5Visit::kContinue : Hdf5Visit::kSkipGroup;
+  }
+  if (walk.found.size() >= kMostVariables) return Hdf5Visit::kContinue;
   MatVariable variable;
-  variable.name = name;
+  variable.name = link.path;
   std::replace(variable.name.begin(), variable.name.end(), '/', '.');
-  if (!ReadOne(object, walk, variable)) return -1;
+  if (!ReadOne(link.object, walk, variable)) return Hdf5Visit::kFail;
   if (!variable.values.empty() && variable.name.size() < kMostTextBytes) {
     walk.found.push_back(std::move(variable));
   }
-  return 0;
+  return Hdf5Visit::kContinue;
 }
 
 /// Child process: reads the file and sends its content.
@@ -118,8 +119,8 @@ void SendVariables(const std::string& path, double file_bytes, const ChildOutput
   {
     const QuietHdf5 quiet;
     const Hdf5Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    const bool readable =
-        file && H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, VisitVariable, &walk) >= 0;
+    const auto visit = [&](Hdf5Link& link) { return VisitVariable(link, walk); };
+    const bool readable = file && VisitLinks(file, visit, walk.error);
     if (!readable && walk.error.empty()) walk.error = "the file is damaged: " + quiet.why();
   }
   const auto number = [&](std::uint64_t n) { to.Write(&n, sizeof n); };
