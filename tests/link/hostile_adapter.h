@@ -76,6 +76,8 @@ class HostileAdapter {
   /// Number of times that a busy machine delayed the adapter or the command so long that the
   /// command may rightly report a silent adapter or unconfirmed boards.
   int delays() const { return delays_; }
+  /// Number of frames that have arrived.
+  int frames() const { return frames_; }
   /// Whether a motor has power. Up to date when the command gets a reply.
   bool AnyPower() const { return any_power_; }
   /// Whether a motor has had power, even if too briefly for a test on a busy machine to see it.
@@ -121,6 +123,7 @@ class HostileAdapter {
   /// Counts a frame of the command, and the time since the one before.
   void NoteFrame() {
     const auto now = Clock::now();
+    ++frames_;
     if (any_power_ && now - framed_ > kLateFrame) ++delays_;
     framed_ = now;
     ticks_left_ = kTicksPerFrame;
@@ -225,7 +228,7 @@ class HostileAdapter {
   std::vector<std::unique_ptr<FakeBoard>> boards_;
   std::atomic<bool> attacks_{false}, hostile_{false}, ended_{false}, any_power_{false},
       had_power_{false}, attacked_power_{false};
-  std::atomic<int> delays_{0}, frames_until_attack_{0};
+  std::atomic<int> delays_{0}, frames_{0}, frames_until_attack_{0};
   std::thread thread_;
 };
 

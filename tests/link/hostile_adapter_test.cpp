@@ -23,6 +23,8 @@ constexpr double kSoon_s = 20;
 constexpr int kTries = 20;
 /// Frames with power before an attack: some cycles of one broadcast and two reads.
 constexpr int kFrames = 30;
+/// Frames of any command before an attack, and frames, answered or not, after it.
+constexpr int kFirstFrames = 5, kFurtherFrames = 3;
 
 class HostileRobot : public CommandTest {
  protected:
@@ -73,6 +75,8 @@ class HostileRobot : public CommandTest {
     if (!HasEnded(pid)) kill(pid, SIGKILL);
     return End(pid);
   }
+  /// Number of lines that a command has printed.
+  int Lines() const { return Count(Read(Path("out.txt")) + Read(Path("err.txt")), "\n"); }
   static int Count(const std::string& text, const std::string& part) {
     int count = 0;
     for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
@@ -166,10 +170,17 @@ TEST_P(HostileCommand, EndsByAnInterruptAndSaysNothingUnconfirmed) {
               "/share/experiments/push_20n_motors.yaml\n"));
   }
   if (from_start) adapter.Attack();
+  const int frames_before = adapter.frames();
   const pid_t robot = StartRobot(adapter, words);
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
-  if (!from_start) adapter.Attack();
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  if (!from_start) {
+    Await([&] { return adapter.frames() >= frames_before + kFirstFrames || HasEnded(robot); });
+    adapter.Attack();
+  }
+  // The command has noticed the attack if it has sent further frames, printed a line or ended.
+  const int frames = adapter.frames(), lines = Lines();
+  Await([&] {
+    return adapter.frames() >= frames + kFurtherFrames || Lines() > lines || HasEnded(robot);
+  });
   kill(robot, SIGINT);
   const CommandResult done = EndSoon(robot);
   const bool says_off = Count(done.output + done.errors, "Motors are off.") > 0;
