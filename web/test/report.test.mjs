@@ -53,6 +53,17 @@ test("ItSaysWhatWasRunAndWhatCameOut", async () => {
   assert.match(await page.locator(".inputs").innerText(), /<b>prism<\/b>/, "inputs are text, never markup");
 });
 
+test("ARunThatEndsInItsFirstSecondsHasNoTensionsAfterThem", async () => {
+  const data = report();
+  for (const { tension } of data.summary.cables) tension.max_after_start_n = null;
+  data.summary.cables[1].tension.max_after_start_n = 2.5;
+  const short = await openPage(writeReport(data, folder));
+  const table = short.locator("table.numbers", { hasText: "max after the start" });
+  const column = (await table.locator("thead tr").first().locator("th").allInnerTexts()).indexOf("max after the start");
+  const cell = (row) => table.locator("tbody tr").nth(row).locator("th, td").nth(column).innerText();
+  assert.deepEqual([await cell(0), await cell(1), await cell(2)], ["–", "2.500", "–"]);
+});
+
 test("ItBeginsWithWhatWasRunAndEndsWithWhatIsForTheRecord", async () => {
   const titles = await page.locator("main.report h2").allInnerTexts();
   assert.deepEqual(titles, ["Experiment", "Replay", "Results", "Comparison with references", "Plots", "Reproducibility"]);
