@@ -14,7 +14,7 @@
 namespace taut::cli {
 namespace {
 
-struct Arguments {
+struct MjcfExportArguments {
   std::string input, out;
   std::vector<std::string> set;
   MjcfExport options;
@@ -24,7 +24,7 @@ struct Arguments {
 const std::map<std::string, MjcfCables> kCables{{"actuator", MjcfCables::kActuator},
                                                 {"spring", MjcfCables::kSpring}};
 
-int Export(const Arguments& args) {
+int Export(const MjcfExportArguments& args) {
   const auto overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
   Diagnostics found;
@@ -42,7 +42,7 @@ int Export(const Arguments& args) {
 }  // namespace
 
 void AddExportMjcf(CLI::App& export_, int& exit_code) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<MjcfExportArguments>();
   CLI::App* mjcf = export_.add_subcommand(
       "mjcf", "Write a robot, with the terrain of its experiment, for MuJoCo (2.2.2 and 3).");
   AddInput(*mjcf, "robot", {"model", "experiment"}, args->input, "Model or experiment file (YAML)")

@@ -17,7 +17,7 @@
 namespace taut::cli {
 namespace {
 
-struct Arguments {
+struct MjcfImportArguments {
   std::string input, out, experiment;
   MjcfImport options;
   bool strict = false;
@@ -26,7 +26,7 @@ struct Arguments {
 const std::map<std::string, MjcfSlack> kSlack{{"tension_only", MjcfSlack::kTensionOnly},
                                               {"as_mujoco", MjcfSlack::kAsMujoco}};
 
-int Import(const Arguments& args) {
+int Import(const MjcfImportArguments& args) {
   if (!args.experiment.empty() && args.out.empty()) {
     fmt::print(stderr, "error: --experiment needs --out: the experiment names the model file\n");
     return kUsage;
@@ -72,7 +72,7 @@ int Import(const Arguments& args) {
 }  // namespace
 
 void AddImportMjcf(CLI::App& import, int& exit_code) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<MjcfImportArguments>();
   CLI::App* mjcf = import.add_subcommand(
       "mjcf", "Convert a MuJoCo model (MJCF) of a tensegrity robot to a model file.");
   mjcf->add_option("file", args->input, "MJCF file (XML)")->required();
