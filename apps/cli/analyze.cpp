@@ -10,6 +10,7 @@
 #include "analyze_form.h"
 #include "analyze_inverse.h"
 #include "analyze_linear.h"
+#include "analyze_page.h"
 #include "analyze_pose.h"
 #include "analyze_report.h"
 #include "analyze_shapes.h"
@@ -24,7 +25,7 @@ namespace taut::cli {
 namespace {
 
 struct AnalyzeArguments {
-  std::string path;
+  std::string path, page;
   std::vector<std::string> set, load_cases;
   int modes = 10;
   bool tables = false, strict = false, backwards = false, form = false, linear = false;
@@ -175,8 +176,7 @@ int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult r
   std::vector<std::string> next = !result.Found() ? Again(args, {"--tables"})
                                   : FormFindingMayHelp(result.forces)
                                       ? Again(args, {"--form", "--tension_n", "10"})
-                                  : args.modes > 0 ? Again(args, {"--out", "shapes"})
-                                                   : std::vector<std::string>{"view", args.path};
+                                      : Again(args, {"--page", "analysis.html"});
   if (!args.forms.out.empty()) {
     ExperimentSpec there = loaded.experiment;
     there.robot = result.robot;
@@ -185,7 +185,16 @@ int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult r
     if (exit == kOk) exit = written;
     if (!first.empty()) next = {"view", first};
   }
-  if (!json) SayNext(next);
+  const bool paged = !args.page.empty();
+  if (paged) {
+    ExperimentSpec there = loaded.experiment;
+    there.robot = result.robot;
+    const int written = WriteAnalysisPage(args.page, there, result, args.modes);
+    if (written != kOk) return written;
+    if (!json) fmt::print("Page: {}\n", args.page);
+  }
+  if (!json && paged) SayNextProgram({"xdg-open", args.page});
+  if (!json && !paged) SayNext(next);
   return result.Found() ? exit : kFailed;
 }
 
@@ -372,6 +381,14 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       ->option_text("PATH")
       ->excludes(analyze->get_option("--inverse"));
   AddLinear(*analyze, *args);
+  auto* const page = analyze
+                         ->add_option("--page", args->page,
+                                      "Also write the load cases as an HTML page: members colored "
+                                      "by utilization, displacements, modes, tables")
+                         ->option_text("FILE");
+  for (const char* const other : {"--inverse", "--form", "--linear", "--response"}) {
+    page->excludes(analyze->get_option(other));
+  }
   analyze->add_flag("--strict", args->strict, kStrictHelp);
   analyze->footer(
       "Examples:\n"
@@ -381,6 +398,7 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "  taut analyze models/prism3.yaml --form --tension_n 20 --out form.yaml\n"
       "  taut analyze models/prism3.yaml --out shapes && taut view shapes/mode_1/trace.h5\n"
       "  taut analyze experiments/drop_six_strut.yaml --pose runs/drop_six_strut\n"
+      "  taut analyze experiments/bridge_crowd.yaml --page analysis.html\n"
       "  taut analyze models/prism3.yaml --linear prism.h5\n"
       "  taut analyze models/hanging_mass.yaml --response node/mass/force_z node/mass/position_z\n"
       "Equilibria, self-stress, --inverse and --form are static: independent of the step, with "

@@ -51,17 +51,25 @@ bool ExceedsDisplacement(const CaseResult& result) {
   return result.at.found && limit_m && result.move.distance_m > *limit_m;
 }
 
-std::string CaseTable(const AnalysisResult& result) {
-  Table table({"load case", "max displacement [mm]", "least safety factor", "first slack at",
-               "reactions z [N]"});
+std::vector<std::vector<std::string>> CaseRows(const AnalysisResult& result) {
+  std::vector<std::vector<std::string>> rows{{"load case", "max displacement [mm]",
+                                              "least safety factor", "first slack at",
+                                              "reactions z [N]"}};
   for (const CaseResult& one : result.cases) {
     if (!one.at.found) {
-      table.Add({one.loads.name, "no equilibrium", "-", "-", "-"});
+      rows.push_back({one.loads.name, "no equilibrium", "-", "-", "-"});
       continue;
     }
-    table.Add({one.loads.name, DisplacementCell(one), SafetyCell(one), SlackCell(one),
-               Fixed(ReactionZ_n(one), 3)});
+    rows.push_back({one.loads.name, DisplacementCell(one), SafetyCell(one), SlackCell(one),
+                    Fixed(ReactionZ_n(one), 3)});
   }
+  return rows;
+}
+
+std::string CaseTable(const AnalysisResult& result) {
+  const auto rows = CaseRows(result);
+  Table table(rows.front());
+  for (std::size_t i = 1; i < rows.size(); ++i) table.Add(rows[i]);
   return table.Text();
 }
 

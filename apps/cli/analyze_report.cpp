@@ -12,10 +12,6 @@
 namespace taut::cli {
 namespace {
 
-std::string FactorCell(const std::optional<double>& factor) {
-  return factor ? SafetyFactorText(*factor) : "-";
-}
-
 std::vector<std::string> Factors(const MemberLoad& load) {
   return {FactorCell(load.buckling), FactorCell(load.yield), FactorCell(load.strength),
           FactorCell(load.slackening)};
@@ -169,6 +165,10 @@ std::string CaseText(const CaseResult& result, int most_modes) {
 
 std::string SafetyFactorText(double factor) {
   return factor < 1000 ? fmt::format("{:.2f}", factor) : fmt::format("{:.3g}", factor);
+}
+
+std::string FactorCell(const std::optional<double>& factor) {
+  return factor ? SafetyFactorText(*factor) : "-";
 }
 
 bool AnalysisResult::Found() const {

@@ -60,12 +60,18 @@ bool ExceedsDisplacement(const CaseResult& result);
 /// Formats the load cases as a table: largest displacement, least safety factor, first slack cable,
 /// sum of the vertical reactions.
 std::string CaseTable(const AnalysisResult& result);
+/// Returns the cells of this table; the first row is the header.
+std::vector<std::vector<std::string>> CaseRows(const AnalysisResult& result);
 
 /// Formats the verdict on the structure and a summary of at most ten lines.
 std::string AnalysisSummary(const AnalysisResult& result);
+/// Returns the lines of the verdict and of the summary, without the table of load cases.
+std::vector<std::string> AnalysisLines(const AnalysisResult& result);
 
 /// Returns a safety factor as text.
 std::string SafetyFactorText(double factor);
+/// Returns the same, or "-" without a factor.
+std::string FactorCell(const std::optional<double>& factor);
 
 /// Returns whether the structure has cables, but no state of self-stress with tension in all of
 /// them.

@@ -118,28 +118,35 @@ std::string BarsLine(MemberKind kind, const CaseResult& result) {
 
 }  // namespace
 
-std::string AnalysisSummary(const AnalysisResult& result) {
-  CappedLines lines;
-  for (const std::string& note : result.notes) lines.Add(note);
-  lines.Add(SelfStressLine(result.forces));
-  lines.Add(FormHint(result.forces));
+std::vector<std::string> AnalysisLines(const AnalysisResult& result) {
+  std::vector<std::string> lines{VerdictOn(result)};
+  const auto add = [&lines](const std::string& line) {
+    if (!line.empty()) lines.push_back(line);
+  };
+  for (const std::string& note : result.notes) add(note);
+  add(SelfStressLine(result.forces));
+  add(FormHint(result.forces));
   for (const CaseResult& one : result.cases) {
     if (one.open) {
-      lines.Add(
-          fmt::format("load case {}: {} forces are indeterminate (--tables lists their bounds)",
+      add(fmt::format("load case {}: {} forces are indeterminate (--tables lists their bounds)",
                       one.loads.name, one.open->forces.undetermined));
     }
   }
   const CaseResult& shown = WorstOf(result.cases);
   if (shown.at.found) {
-    lines.Add(FrequenciesLine(shown));
-    for (const CableGroup& group : GroupCables(result.robot, 4)) {
-      lines.Add(CablesLine(group, shown));
-    }
-    lines.Add(BarsLine(MemberKind::kBar, shown));
-    lines.Add(BarsLine(MemberKind::kRod, shown));
+    add(FrequenciesLine(shown));
+    for (const CableGroup& group : GroupCables(result.robot, 4)) add(CablesLine(group, shown));
+    add(BarsLine(MemberKind::kBar, shown));
+    add(BarsLine(MemberKind::kRod, shown));
   }
-  return lines.Text(VerdictOn(result) + "\n" + CaseTable(result));
+  return lines;
+}
+
+std::string AnalysisSummary(const AnalysisResult& result) {
+  const std::vector<std::string> all = AnalysisLines(result);
+  CappedLines lines;
+  for (std::size_t i = 1; i < all.size(); ++i) lines.Add(all[i]);
+  return lines.Text(all.front() + "\n" + CaseTable(result));
 }
 
 }  // namespace taut::cli

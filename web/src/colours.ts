@@ -52,7 +52,9 @@ export function palette(theme: Theme): Palette {
   return theme === "dark" ? DARK : LIGHT;
 }
 
-type Rgb = readonly [number, number, number];
+export type Rgb = readonly [number, number, number];
+/** Returns the color at a place on a scale. */
+export type ColourScale = (share: number, theme: Theme) => Rgb;
 
 // Samples of matplotlib's viridis, whose steps look equal (CAM02-UCS), in steps of 1/16. The bright end is
 // left out on a light background, the dark end on a dark one; high tensions have the most contrast.
@@ -85,6 +87,10 @@ function colourAt(scale: readonly Rgb[], share: number): Rgb {
 export const tensionColour = (share: number, theme: Theme): Rgb => colourAt(SCALES[theme], share);
 /** Returns the color of a strut's compression, relative to the end of the scale. */
 export const compressionColour = (share: number, theme: Theme): Rgb => colourAt(COMPRESSION[theme], share);
+/** Returns the color of a member's utilization; above 1, where the member fails, it is red. */
+export const useColour: ColourScale = (share, theme) => colourAt(share > 1 ? COMPRESSION[theme].slice(-1) : SCALES[theme], share);
+/** Returns the color of an axial force from -1 (compression) to 1 (tension), relative to the largest. */
+export const forceColour: ColourScale = (share, theme) => colourAt(STRAIN[theme], 0.5 - 0.5 * share);
 /** Returns the color of a strain from -1 to 1, relative to the largest. */
 export const strainColour = (share: number, theme: Theme): Rgb => colourAt(STRAIN[theme], 0.5 + 0.5 * share);
 

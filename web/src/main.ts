@@ -1,25 +1,27 @@
-// Entry point of the page: live view, replay or report, depending on embedded data.
+// Entry point of the page: live view, replay, report or statics, depending on embedded data.
 import { App } from "./app";
 import { ReportSource } from "./embedded";
 import { ServerSource } from "./live";
 import { buildPage, sayWhyNot } from "./page";
-import { type Report, PROTOCOL_VERSION } from "./protocol";
+import { type Report, type StaticsPage, PROTOCOL_VERSION } from "./protocol";
+import { staticsPage } from "./statics/page";
 
-/** Returns the embedded report; null: none, so there is a server. */
-function embeddedReport(): Report | null {
+/** Returns the embedded data; null: none, so there is a server. */
+function embedded(): Report | StaticsPage | null {
   const text = document.getElementById("taut-report")?.textContent?.trim() ?? "";
   if (text === "") return null;
-  const report = JSON.parse(text) as Report;
-  if (report.version !== PROTOCOL_VERSION) {
-    throw new Error(`the data have version ${report.version}, this page reads version ${PROTOCOL_VERSION}`);
+  const data = JSON.parse(text) as Report | StaticsPage;
+  if (data.version !== PROTOCOL_VERSION) {
+    throw new Error(`the data have version ${data.version}, this page reads version ${PROTOCOL_VERSION}`);
   }
-  return report;
+  return data;
 }
 
 const root = document.getElementById("app")!;
 try {
-  const report = embeddedReport();
-  buildPage(root, new App(report ? new ReportSource(report) : new ServerSource(), report));
+  const data = embedded();
+  if (data && "cases" in data) staticsPage(root, data);
+  else buildPage(root, new App(data ? new ReportSource(data) : new ServerSource(), data));
 } catch (error) {
   sayWhyNot(root, error);
 }

@@ -295,6 +295,57 @@ export interface Report {
   frames_base64: string;
 }
 
+/** Table of results. */
+export interface ResultTable {
+  title: string;
+  /** Cells, row by row; the first row is the header. */
+  rows: string[][];
+}
+
+/** A load case of a static analysis, or a state of the described structure. */
+export interface LoadedCase {
+  name: string;
+  /** Reason for the lack of an equilibrium; empty if there is one. */
+  reason: string;
+  /** Displacement from the described pose; absent without an equilibrium. */
+  displacement?: MotionShape;
+  /** Section `cables` of frames, for each cable; null: unknown. */
+  cables: (number | null)[];
+  /** Section `pushes` of frames, for each loaded node. */
+  loads: (number | null)[];
+  /** Section `contacts` of frames, for each reaction of a support. */
+  reactions: (number | null)[];
+  /** Axial force per body, for rods, tension positive; null: unknown. */
+  body_force_n: (number | null)[];
+  /** Axial force per joint, for bars. */
+  joint_force_n: (number | null)[];
+  /** Utilization per cable: force relative to its limit, the reciprocal of the safety factor; null: unknown. */
+  cable_use: (number | null)[];
+  /** Utilization per body, for rods. */
+  body_use: (number | null)[];
+  /** Utilization per joint, for bars. */
+  joint_use: (number | null)[];
+  /** Modes other than rigid motions about the equilibrium, in the order of their frequencies. */
+  modes: MotionShape[];
+  tables: ResultTable[];
+}
+
+/** Data of a page of `taut analyze`, in <script type="application/json" id="taut-report">. */
+export interface StaticsPage {
+  /** Version of this protocol. */
+  version: number;
+  title: string;
+  /** The structure as described. */
+  scene: Scene;
+  /** Lines of the summary. */
+  summary: string[];
+  /** Tables of all load cases. */
+  tables: ResultTable[];
+  cases: LoadedCase[];
+  /** Mechanisms of the described pose, and its states of self-stress, scaled to a largest force density of 1 N/m. */
+  described: LoadedCase[];
+}
+
 /** Displayed objects. Sent after hello, and again after each change. */
 export interface Scene {
   bodies: Body[];

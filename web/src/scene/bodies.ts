@@ -4,7 +4,7 @@ import {
 } from "three";
 import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
 import type { Theme } from "../app";
-import { compressionColour, palette } from "../colours";
+import { type ColourScale, compressionColour, palette } from "../colours";
 import type { Frame } from "../frame";
 import { VALUES } from "../layout";
 import type { Scene, Shape } from "../protocol";
@@ -17,8 +17,9 @@ export class Bodies implements Part {
   readonly meshes: Mesh[] = [];
   private readonly groups: Group[];
   private readonly axes: AxesHelper[];
-  /** Compression of each body relative to the end of the scale; NaN: none. */
+  /** Place of each rod on its color scale; NaN: none. */
   private shares: ArrayLike<number> = [];
+  private scale: ColourScale = compressionColour;
   private marked = -1;
   private theme: Theme = "light";
 
@@ -62,13 +63,14 @@ export class Bodies implements Part {
       const share = kind === "rod" ? this.shares[body] : undefined;
       if (body === this.marked) material.color.set(colours.selected);
       else if (share === undefined || Number.isNaN(share)) material.color.set(colours[kind]);
-      else material.color.setRGB(...compressionColour(share, theme), "srgb");
+      else material.color.setRGB(...this.scale(share, theme), "srgb");
     }
   }
 
-  /** Colors struts by compression, relative to the end of the scale. */
-  showCompression(shares: ArrayLike<number>): void {
+  /** Colors struts by their places on a color scale. */
+  showShares(shares: ArrayLike<number>, scale: ColourScale): void {
     this.shares = shares;
+    this.scale = scale;
     this.paint(this.theme);
   }
 

@@ -5,7 +5,7 @@ import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import type { Theme } from "../app";
-import { palette, strainColour, tensionColour } from "../colours";
+import { type ColourScale, palette, strainColour, tensionColour, useColour } from "../colours";
 import { cableState, type Frame, isSlack } from "../frame";
 import type { Cable, Scene } from "../protocol";
 import { layCable, pointCount, spansOfParts, spanTensions } from "./cable_path";
@@ -28,6 +28,9 @@ export class Cables implements Part {
   /** Unstrained lengths of the cables. If set, colors show strain, relative to the largest. */
   strainFrom_m: readonly number[] | null = null;
   largestStrain = 0;
+  /** Place of each cable on a color scale, shown instead of tension; NaN: none. null: tension. */
+  shares: ArrayLike<number> | null = null;
+  scale: ColourScale = useColour;
   private readonly lines: (Line2 | null)[];
   private strains: readonly number[] = [];
   private readonly diameter_m: number;
@@ -116,14 +119,16 @@ export class Cables implements Part {
       material.color.set(palette(this.theme).selected);
     } else if (this.strainFrom_m) {
       material.color.setRGB(...strainColour((this.strains[i] ?? 0) / (this.largestStrain || 1), this.theme), "srgb");
-    } else if (slack) {
+    } else if (slack || (this.shares && Number.isNaN(this.shares[i]))) {
       material.color.set(palette(this.theme).slack);
+    } else if (this.shares) {
+      material.color.setRGB(...this.scale(this.shares[i]!, this.theme), "srgb");
     } else {
       material.color.copy(this.tensionColour(share));
     }
     if (!this.scene.cables[i]!.parted) return;
     const one = material.color.clone();
-    const plain = slack || i === this.marked || spans.length < 2;
+    const plain = slack || this.shares !== null || i === this.marked || spans.length < 2;
     const colours = spans.map((tension_n) => (plain ? one : this.tensionColour(this.share(tension_n))));
     const points = this.points[i]!.length;
     paintParts(line, spansOfParts(this.scene.cables[i]!, points).map((span) => colours[span] ?? one));

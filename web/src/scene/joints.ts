@@ -5,7 +5,7 @@ import {
   LineSegments, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector2, Vector3,
 } from "three";
 import type { Theme } from "../app";
-import { palette } from "../colours";
+import { type ColourScale, palette, useColour } from "../colours";
 import { type Frame, frameOfScene } from "../frame";
 import { VALUES } from "../layout";
 import type { Joint, Scene, Shape, Vec3 } from "../protocol";
@@ -64,6 +64,9 @@ export class Joints implements Part {
   private readonly diameter_m: number;
   private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
   private marked = -1;
+  /** Place of each bar on its color scale; NaN: none. */
+  private shares: ArrayLike<number> = [];
+  private scale: ColourScale = useColour;
   private theme: Theme = "light";
 
   constructor(private readonly scene: Scene, size_m: number) {
@@ -106,6 +109,13 @@ export class Joints implements Part {
     this.tubes.instanceMatrix.needsUpdate = true;
   }
 
+  /** Colors bars by their places on a color scale. */
+  showShares(shares: ArrayLike<number>, scale: ColourScale): void {
+    this.shares = shares;
+    this.scale = scale;
+    this.paint(this.theme);
+  }
+
   /** Highlights a joint; -1: none. */
   mark(joint: number): void {
     this.marked = joint;
@@ -120,7 +130,11 @@ export class Joints implements Part {
       ground.color.set(i === this.marked ? selected : box);
     });
     this.lines.material.color.set(this.distances.includes(this.marked) ? selected : rod);
-    this.distances.forEach((index, k) => this.tubes.setColorAt(k, new Color(index === this.marked ? selected : rod)));
+    this.distances.forEach((index, k) => {
+      const share = this.shares[index] ?? NaN;
+      const plain = index === this.marked || Number.isNaN(share);
+      this.tubes.setColorAt(k, plain ? new Color(index === this.marked ? selected : rod) : new Color().setRGB(...this.scale(share, theme), "srgb"));
+    });
     if (this.tubes.instanceColor) this.tubes.instanceColor.needsUpdate = true;
   }
 

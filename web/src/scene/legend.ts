@@ -29,13 +29,17 @@ export function legend(app: App, view: View): HTMLElement {
     const max_n = world.cables.scale_n;
     const { reference_n, reference_m } = world.forces;
     const strain = world.cables.strainFrom_m !== null;
-    const key = `${theme} ${max_n} ${strain} ${world.cables.largestStrain} ${world.compressionScale_n} ${world.usesBuckling} ${reference_n} ${world.size_m} ${world.scene.contact_forces} ${world.scene.joints.length}`;
+    const key = `${theme} ${max_n} ${world.colours?.title} ${world.colours?.marks} ${strain} ${world.cables.largestStrain} ${world.compressionScale_n} ${world.usesBuckling} ${reference_n} ${world.size_m} ${world.scene.contact_forces} ${world.scene.joints.length}`;
     if (key === shown) return;
     shown = key;
-    if (strain) tension.draw("strain of cables", (share) => css(strainColour(2 * share - 1, theme)), [-1, 0, 1].map((share) => `${signed(number(100 * share * world.cables.largestStrain, 2))} %`));
+    const results = world.colours;
+    if (results) {
+      const { title, scale, ends: [from, to], marks } = results;
+      tension.draw(title, (share) => css(scale(from + share * (to - from), theme)), marks);
+    } else if (strain) tension.draw("strain of cables", (share) => css(strainColour(2 * share - 1, theme)), [-1, 0, 1].map((share) => `${signed(number(100 * share * world.cables.largestStrain, 2))} %`));
     else tension.draw("cable tension", (share) => css(tensionColour(share, theme)), [0, 0.5, 1].map((share) => `${number(share * max_n, 2)} N`), true);
     slack.hidden = strain;
-    compression.element.hidden = strain || !world.compression.hasStruts;
+    compression.element.hidden = strain || results !== null || !world.compression.hasStruts;
     const end = (share: number) => (world.usesBuckling ? `${100 * share} %` : `${number(share * world.compressionScale_n, 2)} N`);
     compression.draw(world.usesBuckling ? "strut compression / Euler load" : "strut compression", (share) => css(compressionColour(share, theme)), [0, 0.5, 1].map(end));
     const colours = palette(theme);
@@ -43,7 +47,7 @@ export function legend(app: App, view: View): HTMLElement {
     unrecorded.hidden = contact_forces || app.live || strain;
     arrows.hidden = strain;
     arrows.replaceChildren(
-      ...(contact_forces ? [sign(colours.contact), "contact"] : []), sign(colours.push), "push",
+      ...(contact_forces ? [sign(colours.contact), results ? "reaction" : "contact"] : []), sign(colours.push), results ? "load" : "push",
       el("span.note", {}, `${number(reference_m, 2)} m = ${number(reference_n, 2)} N`));
     centre.replaceChildren(sign(colours.path, "●"), "center of mass and its path");
     centre.hidden = !world.path.object.visible;

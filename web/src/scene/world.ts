@@ -1,6 +1,7 @@
 // All objects of one scene in the 3D view; a new scene creates a new World.
 import { Box3, Group, Vector3 } from "three";
 import type { Theme } from "../app";
+import { type ColourScale, compressionColour } from "../colours";
 import { cableState, type Frame, frameOfScene } from "../frame";
 import type { Scene } from "../protocol";
 import { niceAbove } from "../util";
@@ -18,6 +19,19 @@ import { worldPoint } from "./poses";
 import { Ground } from "./terrain";
 import { Wheels } from "./wheels";
 
+/** Places of members on a color scale; NaN: none. */
+export interface MemberColours {
+  cables: ArrayLike<number>;
+  bodies: ArrayLike<number>;
+  joints: ArrayLike<number>;
+  scale: ColourScale;
+  /** Heading of the scale in the legend. */
+  title: string;
+  /** Places of the ends of the scale, and the numbers below both ends and the middle. */
+  ends: readonly [number, number];
+  marks: readonly string[];
+}
+
 export class World {
   readonly object = new Group();
   readonly bodies: Bodies;
@@ -29,6 +43,8 @@ export class World {
   private readonly rest: RestForm;
   readonly ground: Ground;
   readonly compression: Compression;
+  /** Results of an analysis that colors show; null: tension and compression. */
+  colours: MemberColours | null = null;
   /** End of the scale of compression [N] for struts without a known Euler load. */
   compressionScale_n = 0;
   /** Bounding box of the bodies at the start. */
@@ -61,7 +77,22 @@ export class World {
     if (!on) return;
     this.cables.update(frameOfScene(this.scene));
     this.cables.strainFrom_m = this.cables.lengths();
-    this.bodies.showCompression([]);
+    this.bodies.showShares([], compressionColour);
+  }
+
+  /** Shows the described pose, translucent. */
+  showRest(on: boolean): void {
+    this.rest.object.visible = on;
+  }
+
+  /** Colors members by results of an analysis instead of tension and compression. */
+  showColours(colours: MemberColours): void {
+    this.colours = colours;
+    this.path.shown = false; // nothing travels
+    this.cables.shares = colours.cables;
+    this.cables.scale = colours.scale;
+    this.joints.showShares(colours.joints, colours.scale);
+    this.bodies.showShares(colours.bodies, colours.scale);
   }
 
   update(frame: Frame): void {
@@ -73,7 +104,7 @@ export class World {
     }
     this.cables.scale_n = niceAbove(largest_n);
     for (const part of this.parts) part.update(frame);
-    if (this.compression.hasStruts && !this.cables.strainFrom_m) this.showCompression(frame);
+    if (this.compression.hasStruts && !this.cables.strainFrom_m && !this.colours) this.showCompression(frame);
   }
 
   /** Whether colors show compression as a share of Euler's load. */
@@ -88,7 +119,7 @@ export class World {
     const { usesBuckling } = this;
     const most_n = force_n.reduce((most, force) => (force > most ? force : most), 0);
     this.compressionScale_n = niceAbove(Math.max(most_n, this.compressionScale_n));
-    this.bodies.showCompression(force_n.map((force, body) => (usesBuckling ? force / (buckling_n[body] ?? NaN) : force / this.compressionScale_n)));
+    this.bodies.showShares(force_n.map((force, body) => (usesBuckling ? force / (buckling_n[body] ?? NaN) : force / this.compressionScale_n)), compressionColour);
   }
 
   paint(theme: Theme): void {

@@ -13,6 +13,16 @@ const END = 1e-6;
 
 const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
+/** Returns the share of its amplitude, -1 to 1, at which an oscillation is shown now. */
+export function amplitudeNow(started_ms: number): number {
+  return reducedMotion() ? 1 : Math.sin((2 * Math.PI * (performance.now() - started_ms)) / 1000 / PERIOD_S);
+}
+
+/** Returns the factor on a mode shape with the shown amplitude. */
+export function modeAmplitude(scene: Scene, shape: MotionShape, size_m: number): number {
+  return (AMPLITUDE * size_m) / (largestDisplacement(scene, shape) || 1);
+}
+
 /** Describes a shape: number, frequency, and how its motion differs from the real one. */
 export function shapeText({ kind, number: place, count, frequency_hz, slowdown, amplitude }: ShapeInfo): string {
   return [`${kind.replace("_", "-")} ${place} of ${count}`,
@@ -60,9 +70,7 @@ export class ModePlayer {
     const shape = this.playing.value === null ? undefined : this.modes[this.playing.value];
     const { world } = this.view;
     if (!scene || !shape || !world) return;
-    const share = reducedMotion() ? 1 : Math.sin((2 * Math.PI * (performance.now() - this.started_ms)) / 1000 / PERIOD_S);
-    const amplitude = (AMPLITUDE * world.size_m) / (largestDisplacement(scene, shape) || 1);
-    this.view.override = swung(scene, shape, share * amplitude);
+    this.view.override = swung(scene, shape, amplitudeNow(this.started_ms) * modeAmplitude(scene, shape, world.size_m));
     world.update(this.view.override);
     this.view.invalidate();
     requestAnimationFrame(() => this.swing());
