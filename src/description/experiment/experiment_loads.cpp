@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "base/fixed.h"
+#include "description/experiment/area_loads.h"
 #include "description/experiment/experiment_parts.h"
 #include "description/experiment/load_combinations.h"
 #include "description/experiment/load_keys.h"
@@ -35,7 +36,7 @@ int Find(const Placed& name, const char* kind, const std::vector<Named>& all,
 class CaseReader {
  public:
   CaseReader(const RobotSpec& robot, const Scope& scope)
-      : robot_(robot), scope_(scope), line_loads_(robot, scope) {
+      : robot_(robot), scope_(scope), line_loads_(robot, scope), area_loads_(robot, scope) {
     for (std::size_t i = 0; i < robot.def.nodes.size(); ++i) {
       node_of_.emplace(robot.def.nodes[i].name, static_cast<int>(i));
     }
@@ -56,6 +57,7 @@ class CaseReader {
       for (const int node : Nodes(force)) out.forces.push_back({node, force.force_n});
       if (out.forces.size() > kMostLoads) return out;
     }
+    if (!text.areas.empty()) area_loads_.AddTo(out, text.areas);
     if (!text.lines.empty()) line_loads_.AddTo(out, text.lines);
     for (const SettlementText& settlement : text.settlements) {
       const auto known = support_of_.find(settlement.support.text);
@@ -102,19 +104,7 @@ class CaseReader {
       const int node = Find(force.node_name, "node", robot_.def.nodes, all, scope_);
       return node >= 0 ? std::vector{node} : std::vector<int>();
     }
-    const auto match = ReadMatch(*force.nodes.value, "forces.nodes", scope_);
-    std::vector<int> found;
-    for (std::size_t i = 0; i < robot_.node_tags.size() && !match.empty(); ++i) {
-      if (Matches(match, robot_.node_tags[i])) found.push_back(static_cast<int>(i));
-    }
-    if (found.empty() && !match.empty()) {
-      std::vector<std::string> words;
-      for (const auto& tags : robot_.node_tags) words.insert(words.end(), tags.begin(), tags.end());
-      scope_.out.Error("load_case.matches_no_node", force.nodes.value->at,
-                       "forces.nodes: no node matches " + Written(*force.nodes.value),
-                       UnknownWord(match, words, "node"));
-    }
-    return found;
+    return SelectNodes(*force.nodes.value, "forces.nodes", robot_, scope_);
   }
 
   Member MemberAt(const LoadMember& key) const {
@@ -152,6 +142,7 @@ class CaseReader {
   const RobotSpec& robot_;
   const Scope& scope_;
   LineLoads line_loads_;
+  AreaLoads area_loads_;
   std::unordered_map<std::string_view, int> node_of_, support_of_;
   std::vector<bool> is_support_;
   std::map<LoadMember, Gain> gains_;
@@ -166,7 +157,7 @@ bool CheckSelectors(const std::vector<LoadCaseText>& texts, const RobotSpec& rob
   std::size_t selectors = 0;
   for (const LoadCaseText& text : texts) {
     selectors += text.forces.size() + text.settlements.size() + text.rest_lengths.size() +
-                 text.temperatures.size() + text.lines.size();
+                 text.temperatures.size() + text.lines.size() + text.areas.size();
     if (selectors * elements <= kMostExamined) continue;
     scope.out.Error("load_case.too_many_selectors", text.name.at,
                     "the " + std::to_string(selectors) + " loads up to this load case and the " +

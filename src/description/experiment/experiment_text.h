@@ -186,6 +186,13 @@ struct LineLoadText {
   Vec3 force_n_per_m;
   SourceRef at;
 };
+struct AreaLoadText {
+  Raw<SelectorForm> members, nodes;  ///< One of both.
+  double pressure_pa = 0.0;
+  Vec3 direction;  ///< Unit vector.
+  bool projected = false;
+  SourceRef at;
+};
 struct SettlementText : LoadCaseSpec::Settlement {
   Placed support;
 };
@@ -208,6 +215,7 @@ struct LoadCaseText {
   std::vector<RestLengthText> rest_lengths;
   std::vector<TemperatureText> temperatures;
   std::vector<LineLoadText> lines;
+  std::vector<AreaLoadText> areas;
   std::optional<double> max_displacement_m;
 };
 /// Sum of load cases with partial factors.

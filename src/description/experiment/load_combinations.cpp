@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "description/experiment/load_members.h"
 #include "math/vec.h"
 
 namespace taut::description {
 namespace {
-
-constexpr double kSamePoint_m = 1e-9;
 
 /// Index of the length change of each cable or bar in the list of a combination.
 using Positions = std::map<int, std::size_t>;
@@ -54,47 +51,30 @@ void CheckRestLengths(const LoadCaseSpec& sum, const RobotSpec& robot, const Sou
 
 }  // namespace
 
-LineLoads::LineLoads(const RobotSpec& robot, const Scope& scope) : robot_(robot), scope_(scope) {
-  for (std::size_t i = 0; i < robot.def.nodes.size(); ++i) {
-    nodes_of_body_[robot.def.nodes[i].body].push_back(static_cast<int>(i));
-  }
-}
+LineLoads::LineLoads(const RobotSpec& robot, const Scope& scope)
+    : robot_(robot), scope_(scope), places_(robot) {}
 
 void LineLoads::AddTo(LoadCaseSpec& out, const std::vector<LineLoadText>& loads) {
   out_ = &out;
   force_at_.clear();
   for (std::size_t i = 0; i < out.forces.size(); ++i) force_at_.emplace(out.forces[i].node, i);
-  const ModelDef& def = robot_.def;
   for (const LineLoadText& load : loads) {
     if (!load.members.value) continue;
     load_ = &load;
     for (const LoadMember& member :
          SelectMembers(*load.members.value, "line_loads.members", true, robot_, scope_)) {
-      const auto i = static_cast<std::size_t>(member.index);
-      if (member.kind == LoadMember::Kind::kCable) {
-        Cable(def.cables[i]);
-      } else if (member.kind == LoadMember::Kind::kBar) {
-        const JointDef& bar = def.joints[i];
-        Span({bar.body_a, bar.from_m}, {bar.body_b, bar.to_m}, bar.name);
-      } else {
-        const CapsuleDef& rod = def.capsules[i];
-        Span({rod.body, rod.from_m}, {rod.body, rod.to_m}, rod.name);
+      const std::vector<LoadPoint> points = PointsOf(member, robot_);
+      for (std::size_t i = 1; i < points.size(); ++i) {
+        Span(points[i - 1], points[i], NameOf(member, robot_));
       }
     }
   }
 }
 
-void LineLoads::Cable(const CableDef& cable) {
-  for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
-    const AttachmentDef &from = cable.attachments[i - 1], &to = cable.attachments[i];
-    Span({from.body, from.position_m}, {to.body, to.position_m}, cable.name);
-  }
-}
-
-void LineLoads::Span(const Point& from, const Point& to, const std::string& member) {
+void LineLoads::Span(const LoadPoint& from, const LoadPoint& to, const std::string& member) {
   const double half_m = 0.5 * Length(from.at_m - to.at_m);
-  for (const Point& end : {from, to}) {
-    const auto node = NodeAt(end);
+  for (const LoadPoint& end : {from, to}) {
+    const auto node = places_.At(end);
     if (!node && end.body == kWorld) continue;
     if (!node) {
       scope_.out.Error("load_case.end_without_node", load_->members.value->at,
@@ -104,16 +84,6 @@ void LineLoads::Span(const Point& from, const Point& to, const std::string& memb
     }
     Add(*node, half_m * load_->force_n_per_m);
   }
-}
-
-std::optional<int> LineLoads::NodeAt(const Point& point) const {
-  const auto nodes = nodes_of_body_.find(point.body);
-  if (nodes == nodes_of_body_.end()) return std::nullopt;
-  for (const int i : nodes->second) {
-    const NodeDef& node = robot_.def.nodes[static_cast<std::size_t>(i)];
-    if (Length(node.position_m - point.at_m) <= kSamePoint_m) return i;
-  }
-  return std::nullopt;
 }
 
 void LineLoads::Add(int node, const Vec3& force_n) {

@@ -3,11 +3,11 @@
 
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "description/experiment/experiment_text.h"
+#include "description/experiment/load_members.h"
 
 namespace taut::description {
 
@@ -32,18 +32,12 @@ class LineLoads {
   void AddTo(LoadCaseSpec& out, const std::vector<LineLoadText>& loads);
 
  private:
-  struct Point {  ///< Point of a body, in the frame of `NodeDef::position_m`.
-    int body;
-    Vec3 at_m;
-  };
-  void Cable(const CableDef& cable);
-  void Span(const Point& from, const Point& to, const std::string& member);
-  std::optional<int> NodeAt(const Point& point) const;
+  void Span(const LoadPoint& from, const LoadPoint& to, const std::string& member);
   void Add(int node, const Vec3& force_n);
 
   const RobotSpec& robot_;
   const Scope& scope_;
-  std::map<int, std::vector<int>> nodes_of_body_;
+  NodePlaces places_;
   std::map<int, std::size_t> force_at_;  ///< Index of the first force on a node, in `out`.
   const LineLoadText* load_ = nullptr;
   LoadCaseSpec* out_ = nullptr;

@@ -34,6 +34,30 @@ void Keys(Io& io, Like<LineLoadText> auto& l) {
      "Force per length of the member in the described pose, in the world frame.");
 }
 
+template <class Io>
+void Keys(Io& io, Like<AreaLoadText> auto& a) {
+  io.Map("area_load", "load_case.area_load",
+         "Pressure on a surface, such as wind or snow. The surface consists of the triangles and "
+         "the flat quadrilaterals that members form, except those that other selected members "
+         "divide. Faces that are parallel to the direction, and faces whose middle is behind "
+         "another face, have no load. Forces on the corners have the same resultant and moment as "
+         "the pressure.",
+         R"({"nodes": "roof", "pressure_pa": 800, "direction": [0, 0, -1], "projected": true})");
+  io.OneOf({"members", "nodes"});
+  io("members", a.members,
+     "Selector of cables and bars, as for controllers, and of rods, by their names: the edges of "
+     "the surface.");
+  io("nodes", a.nodes,
+     "Selector of nodes by names and tags; the edges are all members between these nodes.");
+  io("pressure_pa", a.pressure_pa, kNeeded, Bound::kAny, "Pressure; negative: suction.");
+  io("direction", a.direction, kNeeded, kDirection,
+     "Direction of the wind or of the falling snow, in the world frame.");
+  io("projected", a.projected,
+     "Snow: the pressure acts on the area projected along the direction, and the force has this "
+     "direction. Otherwise, as for wind, the pressure acts on the area itself, normal to the "
+     "surface, on the side that the direction hits.");
+}
+
 template <class Io, Either<LoadCaseSpec::Settlement, SettlementText> Settlement>
 void Keys(Io& io, Settlement& s) {
   io.Map("settlement", "load_case.settlement", "Displacement of the ground under a support.",
@@ -108,6 +132,7 @@ void Keys(Io& io, LoadCase& c) {
     io("rest_lengths", c.rest_lengths, "Changes of length of cables and bars.");
     io("temperatures", c.temperatures, "Changes of temperature of cables and bars.");
     io("line_loads", c.lines, "Loads per length of members.");
+    io("area_loads", c.areas, "Pressures on surfaces between members.");
   }
   io("max_displacement_m", c.max_displacement_m, kLater, Bound::kPositive,
      "Largest allowed displacement of any node from its position in the described pose.");
