@@ -155,7 +155,8 @@ HttpResponse Answer(const HttpRequest& request, const WebFiles& files,
                "default-src 'self'; script-src 'self' 'unsafe-inline'; img-src 'self' data: "
                "blob:; media-src 'self' blob:; "
                "style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; base-uri 'none'; "
-               "form-action 'none'; frame-ancestors 'none'");
+               "form-action 'none'; frame-ancestors " +
+                   options.frame_ancestors);
   // The cookie authorizes the page's other requests, and reloads without the query.
   response.set(http::field::set_cookie,
                fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", CookieName(options),

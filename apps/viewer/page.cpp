@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "joined_robots.h"
 #include "page_session.h"
 #include "server.h"
+#include "taut/spec.h"
 #include "web_files.h"
 
 namespace taut {
@@ -45,7 +47,7 @@ struct Page::Impl {
   };
 
   Impl(const PageOptions& options, const viewer::ServerOptions& where, viewer::WebFiles files)
-      : session(options.title, options.speed, options.history_period_s),
+      : session(options.title, options.speed, options.history_period_s, options.browser_pauses),
         server(session, std::move(files), where) {}
   ~Impl() {
     server.Stop();
@@ -56,6 +58,7 @@ struct Page::Impl {
   viewer::Server server;
   std::string url, watch_url;
   viewer::JoinedRobots robots;
+  std::optional<ExperimentSpec> experiment;  ///< Of the only robot.
   std::vector<Value> values;
   bool begins = true;
   std::thread thread;
@@ -68,6 +71,8 @@ std::unique_ptr<Page> Page::Open(const PageOptions& options, Diagnostics& out) {
   const auto finite = [](double value) { return std::isfinite(value); };
   check(finite(options.speed) && options.speed >= 0,
         fmt::format("speed must not be negative, got {:g}", options.speed));
+  check(options.browser_pauses || options.speed == 0,
+        fmt::format("speed must be 0 without browser_pauses, got {:g}", options.speed));
   check(finite(options.history_period_s) && options.history_period_s > 0,
         fmt::format("history_period_s must be positive, got {:g}", options.history_period_s));
   check(viewer::IsAddress(options.address),
@@ -83,6 +88,7 @@ std::unique_ptr<Page> Page::Open(const PageOptions& options, Diagnostics& out) {
   where.address = options.address;
   where.port = options.port;
   where.ends_on_signals = false;
+  where.frame_ancestors = options.frame_ancestors;
   auto impl = std::make_unique<Impl>(options, where, viewer::ReadWebFiles(*web));
   if (!impl->server.Listen(error)) {
     out.Error("page.not_made", {}, error);
@@ -100,8 +106,15 @@ Page::~Page() = default;
 const std::string& Page::url() const noexcept { return impl_->url; }
 const std::string& Page::watch_url() const noexcept { return impl_->watch_url; }
 
+int Page::Add(const ExperimentSpec& experiment) {
+  const int robot = Add(experiment.robot.def);
+  if (robot == 0) impl_->experiment = experiment;
+  return robot;
+}
+
 int Page::Add(const ModelDef& robot, const std::string& name, const Vec3& at_m) {
   impl_->begins = true;
+  impl_->experiment.reset();
   return impl_->robots.Add(robot, name, at_m);
 }
 
@@ -126,7 +139,13 @@ void Page::Show(double time_s) {
   if (std::exchange(impl_->begins, false)) {
     std::vector<ChannelInfo> channels;
     for (const Impl::Value& value : impl_->values) channels.push_back(value.channel);
-    impl_->session.Begin(impl_->robots, channels);
+    ExperimentSpec shown;
+    if (impl_->experiment) {
+      shown = *impl_->experiment;
+    } else {
+      shown.robot.def = impl_->robots.def();
+    }
+    impl_->session.Begin(shown, impl_->robots.HasSetPoint(), channels);
   }
   viewer::Frame frame;
   frame.time_s = time_s;

@@ -14,18 +14,21 @@ constexpr std::chrono::milliseconds kIdlePeriod{250};
 
 }  // namespace
 
-PageSession::PageSession(const std::string& title, double speed, double history_period_s)
-    : Session("program", title), history_period_s_(history_period_s), pace_(speed, false) {}
+PageSession::PageSession(const std::string& title, double speed, double history_period_s,
+                         bool browser_pauses)
+    : Session("program", title),
+      history_period_s_(history_period_s),
+      browser_pauses_(browser_pauses),
+      pace_(speed, false) {}
 
-void PageSession::Begin(const JoinedRobots& robots, const std::vector<ChannelInfo>& values) {
-  ExperimentSpec experiment;
-  experiment.robot.def = robots.def();
+void PageSession::Begin(const ExperimentSpec& shown, const std::vector<bool>& has_set_point,
+                        const std::vector<ChannelInfo>& values) {
   const std::lock_guard lock(own_mutex_);
-  history_.emplace(robots.def(), robots.HasSetPoint(), history_period_s_, values);
+  history_.emplace(shown.robot.def, has_set_point, history_period_s_, values);
   now_.reset();
   past_row_.reset();
   ++run_;
-  Json scene = SceneOf(experiment);
+  Json scene = SceneOf(shown);
   for (const ChannelInfo& value : values) scene["values"].push_back(value.name);
   scene["channels"] = ToJson(history_->channels());
   scene["contact_forces"] = true;
@@ -59,13 +62,18 @@ void PageSession::Show(Frame frame) {
     history_->Clear();
     past_row_.reset();
     pace_.Anchor(asked_s_);
+    if (!browser_pauses_) pace_.Resume(asked_s_);
   }
-  Wait(lock, frame.time_s);
+  if (browser_pauses_) Wait(lock, frame.time_s);
   pace_.At(frame.time_s, Clock::now());
   frame.now_s = frame.time_s;
   frame.real_time_factor = pace_.real_time_factor();
   frame.run = run_;
-  if (history_->IsDue(frame.time_s)) history_->Take(frame, frame.values);
+  if (history_->IsDue(frame.time_s)) {
+    const double held_s = past_row_ ? history_->time_s(*past_row_) : 0;
+    history_->Take(frame, frame.values);
+    if (past_row_) past_row_ = history_->RowAt(held_s);  // rows move if memory is full
+  }
   now_ = std::move(frame);
   changed_ = true;
 }
@@ -98,6 +106,7 @@ bool PageSession::Drive(const Command& command) {
   if (type == "drop") return true;  // a dragging client has left; a page has no drags
   const std::lock_guard lock(own_mutex_);
   changed_ = true;
+  if (!browser_pauses_) return Hold(command);
   if (type == "pause") {
     pace_.Pause(asked_s_);
   } else if (type == "resume") {
@@ -118,6 +127,29 @@ bool PageSession::Drive(const Command& command) {
     if (now_) past_row_ = history_->PastRow(command.value, now_->time_s);
   } else {
     return false;
+  }
+  return true;
+}
+
+/// Changes the displayed time without a pause of the program. At the present, the page follows
+/// again.
+bool PageSession::Hold(const Command& command) {
+  const std::string& type = command.type;
+  if (type != "pause" && type != "resume" && type != "step" && type != "seek") return false;
+  if (!now_) return true;
+  if (type == "pause") {
+    past_row_ = history_->RowAt(now_->time_s);
+  } else if (type == "resume") {
+    past_row_.reset();
+  } else if (type == "step") {
+    past_row_ = history_->Step(past_row_, command.count, now_->time_s);
+  } else {
+    past_row_ = history_->PastRow(command.value, now_->time_s);
+  }
+  if (past_row_) {
+    pace_.Pause(asked_s_);
+  } else {
+    pace_.Resume(asked_s_);
   }
   return true;
 }

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "history.h"
-#include "joined_robots.h"
 #include "pace.h"
 #include "session.h"
 
@@ -17,12 +16,15 @@ namespace taut::viewer {
 
 class PageSession final : public Session {
  public:
-  PageSession(const std::string& title, double speed, double history_period_s);
+  /// `browser_pauses`, and `speed` without it: see `PageOptions`.
+  PageSession(const std::string& title, double speed, double history_period_s, bool browser_pauses);
   ~PageSession() override { Stop(); }
 
   // --- for the program, from one thread ------------------------------------------------------
-  /// Restarts the session: frames now contain these robots and the program's channels.
-  void Begin(const JoinedRobots& robots, const std::vector<ChannelInfo>& values);
+  /// Restarts the session: frames now contain the robots of `shown` and the program's channels.
+  /// `has_set_point`: per cable.
+  void Begin(const ExperimentSpec& shown, const std::vector<bool>& has_set_point,
+             const std::vector<ChannelInfo>& values);
   /// Same as `Page::Show`. The session sets the header fields of time and pace.
   void Show(Frame frame);
 
@@ -30,9 +32,11 @@ class PageSession final : public Session {
   void Handle(int client, const Command& command) override;
   Clock::time_point Work() override;
   bool Drive(const Command& command);
+  bool Hold(const Command& command);
   void Wait(std::unique_lock<std::mutex>& lock, double time_s);
 
   const double history_period_s_;
+  const bool browser_pauses_;
   // All members below are protected by the mutex: the program and the session's thread use them.
   std::mutex own_mutex_;
   std::condition_variable goes_on_;

@@ -29,6 +29,10 @@ struct ServerOptions {
   /// Whether SIGINT, SIGTERM and SIGHUP end the server; otherwise the program handles them.
   bool ends_on_signals = true;
 
+  /// Value of the directive frame-ancestors of Content-Security-Policy: origins of other pages that
+  /// may contain this one in a frame.
+  std::string frame_ancestors = "'none'";
+
   /// Limit of plain HTTP sockets (a browser opens six). Above the limit, a new socket replaces the
   /// one with the longest unfinished request.
   std::size_t max_http = 256;

@@ -27,6 +27,8 @@
 
 namespace taut {
 
+struct ExperimentSpec;  // taut/spec.h
+
 struct PageOptions {
   std::string title = "taut";
   /// Playback speed: simulated time / real time, > 0. 0: `Show` does not wait. Users can change the
@@ -44,6 +46,12 @@ struct PageOptions {
 #endif
   /// Simulated time between states that are kept to look back, > 0.
   double history_period_s = 0.01;
+  /// Whether a pause in the browser makes `Show` wait. If false, `Show` never waits: a pause only
+  /// holds the picture, and `speed` must be 0.
+  bool browser_pauses = true;
+  /// Origins of other pages that may contain this page in a frame, as in the directive
+  /// frame-ancestors of Content-Security-Policy ("http://localhost:*").
+  std::string frame_ancestors = "'none'";
 };
 
 /// State of a robot at one time. Each list has the length of the corresponding list of its
@@ -85,6 +93,9 @@ class Page {
   /// bodies, cables and nodes ("left/rod_0"); it may be empty for a single robot. The page restarts
   /// without its history.
   int Add(const ModelDef& robot, const std::string& name = "", const Vec3& at_m = {});
+  /// Same for the robot of an experiment. The page also displays tags, phases and events of the
+  /// experiment, as long as this robot is the only one.
+  int Add(const ExperimentSpec& experiment);
 
   /// Sets the state of a robot for the next `Show`. A robot without a state has its described pose.
   /// The first `Show` after an `Add` determines which cables have set points. An unknown robot or

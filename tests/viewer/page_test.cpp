@@ -187,6 +187,57 @@ TEST_F(PageTest, PausesStepsAndGoesOnAsTheBrowserSays) {
   }
 }
 
+/// Without `browser_pauses`, a pause or a seek holds the picture, and the program goes on.
+TEST_F(PageTest, APageThatOnlyWatchesDoesNotStopTheProgram) {
+  options_.browser_pauses = false;
+  options_.frame_ancestors = "http://localhost:*";
+  const auto page = Open();
+  page->Add(Prism());
+  for (int i = 0; i <= 10; ++i) page->Show(0.1 * i);
+  Client browser = Browser(*page, page->url());
+  const auto shows = [&](double time_s, double now_s) {
+    const auto frame = browser.AwaitFrame([&](const auto& f) {
+      return f[FrameHeader::kFrameTimeS] == time_s && f[FrameHeader::kFrameNowS] == now_s;
+    });
+    return frame[FrameHeader::kFramePaused] == 1;
+  };
+  browser.Send({{"type", "seek"}, {"time_s", 0.1 * 4}});
+  EXPECT_TRUE(shows(0.1 * 4, 0.1 * 10));
+  for (int i = 11; i <= 20; ++i) page->Show(0.1 * i);  // would wait forever
+  EXPECT_TRUE(shows(0.1 * 4, 0.1 * 20));
+  browser.Send({{"type", "step"}, {"count", 2}});
+  EXPECT_TRUE(shows(0.1 * 6, 0.1 * 20));
+  browser.Send({{"type", "seek"}, {"time_s", 100}});  // the present: follows again
+  EXPECT_FALSE(shows(0.1 * 20, 0.1 * 20));
+  browser.Send({{"type", "pause"}});
+  EXPECT_TRUE(shows(0.1 * 20, 0.1 * 20));
+  page->Show(0.1 * 21);
+  EXPECT_TRUE(shows(0.1 * 20, 0.1 * 21));
+  page->Show(0.05);  // another run
+  EXPECT_FALSE(shows(0.05, 0.05));
+  browser.Send({{"type", "speed"}, {"factor", 2}});
+  EXPECT_EQ(browser.Await("error")["text"],
+            "speed is not possible in a page that a program has opened");
+  options_.speed = 1;
+  Diagnostics out;
+  EXPECT_EQ(Page::Open(options_, out), nullptr);
+  EXPECT_NE(out.Format().find("speed must be 0 without browser_pauses"), std::string::npos);
+}
+
+/// Tags and phases of an experiment are in the scene, as in a live run.
+TEST_F(PageTest, AnExperimentIsShownWithItsTagsAndPhases) {
+  Diagnostics found;
+  const auto experiment =
+      LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml", {}, found);
+  ASSERT_TRUE(experiment) << found.Format();
+  const auto page = Open();
+  EXPECT_EQ(page->Add(*experiment), 0);
+  page->Show(0);
+  const Json scene = Browser(*page, page->url()).Await("scene")["scene"];
+  EXPECT_FALSE(scene["phases"].empty());
+  EXPECT_FALSE(scene["cables"][0]["tags"].empty());
+}
+
 TEST_F(PageTest, WhatDoesNotGoWithAProgramIsSaid) {
   const auto page = Open();
   page->Add(Prism());
