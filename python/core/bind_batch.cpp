@@ -55,7 +55,9 @@ void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
   const bool done = worlds.With([&](WorldBatch& batch) {
     Signals signals;
     if (count == 0 && !rows.empty()) batch.Step(step_s, 0, rows);
-    return StepUntilSignal(batch, step_s, count, rows, signals);
+    std::function<void()> between;
+    if (worlds.is_viewed()) between = [&] { worlds.ShowIfRequested(batch); };
+    return StepUntilSignal(batch, step_s, count, rows, signals, between);
   });
   if (!done) throw py::error_already_set();
 }

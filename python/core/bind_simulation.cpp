@@ -19,6 +19,8 @@ void RunUntil(S& shared, double time_s) {
         fmt::format("time_s: {}; expected a finite number up to {:g} [s]", time_s, kLongestTime_s));
   }
   double piece_s = 16 * shared.peek().experiment().step_s;
+  const bool viewed = shared.is_viewed();
+  const std::chrono::milliseconds shortest{viewed ? 4 : 25}, longest{viewed ? 16 : 100};
   shared.Run([&](Simulation& s) {
     double now_s = time_s;
     for (int w = 0; w < s.worlds(); ++w) now_s = std::min(now_s, s.Time(w));
@@ -26,8 +28,8 @@ void RunUntil(S& shared, double time_s) {
     const auto start = std::chrono::steady_clock::now();
     s.RunUntil(std::min(time_s, now_s + piece_s), [&] { return !shared.callbacks()->failed(); });
     const auto took = std::chrono::steady_clock::now() - start;
-    if (took < std::chrono::milliseconds(25)) piece_s *= 2;
-    if (took > std::chrono::milliseconds(100)) piece_s /= 2;
+    if (took < shortest) piece_s *= 2;
+    if (took > longest) piece_s /= 2;
     return true;
   });
 }

@@ -64,6 +64,7 @@ void Define(py::module_& module) {
   taut::python::AddFits(module);
   taut::python::AddAnalyses(module);
   taut::python::AddLinear(module);
+  taut::python::AddLiveViews(module);
 #ifdef TAUT_WITH_COMMAND
   taut::python::AddCommand(module);
 #endif

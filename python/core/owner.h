@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -42,7 +43,10 @@ class Owner {
                                " called from within a step of the same object: callbacks and "
                                "signal handlers may read it (time_s, hash ...), not change it");
     }
-    return Locked(f);
+    return Locked([&](T& owned) {
+      const Change change(changes_);
+      return f(owned);
+    });
   }
 
   /// Calls f for reading only, which is also allowed in callbacks and signal handlers.
@@ -51,6 +55,19 @@ class Owner {
     CheckProcess();
     return InUseHere() ? f(*owned_) : Locked(f);
   }
+
+  /// Calls f(T&), which only reads, without the GIL and from any thread of C++. Returns false
+  /// instead if another thread has access at present.
+  template <class F>
+  bool TryLook(F f) {
+    const std::unique_lock alone(mutex_, std::try_to_lock);
+    if (!alone.owns_lock()) return false;
+    f(*owned_);
+    return true;
+  }
+
+  /// Returns a number that every call of `With` changes; odd during the call.
+  std::uint64_t changes() const { return changes_.load(std::memory_order_relaxed); }
 
   /// Returns the object for access to its constant parts.
   const T& peek() const { return *owned_; }
@@ -68,6 +85,21 @@ class Owner {
   }
 
  private:
+  /// Counts the start and the end of a call of `With`. Only the thread with access writes.
+  class Change {
+   public:
+    explicit Change(std::atomic<std::uint64_t>& count) : count_(count) { Add(); }
+    ~Change() { Add(); }
+    Change(const Change&) = delete;
+    Change& operator=(const Change&) = delete;
+
+   private:
+    void Add() {
+      count_.store(count_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    }
+    std::atomic<std::uint64_t>& count_;
+  };
+
   bool InUseHere() const { return user_.load() == std::this_thread::get_id(); }
 
   template <class F>
@@ -91,6 +123,7 @@ class Owner {
   std::unique_ptr<T> owned_;
   std::timed_mutex mutex_;
   std::atomic<std::thread::id> user_;  ///< Thread that holds the mutex, or the id of no thread.
+  std::atomic<std::uint64_t> changes_{0};
   const char* what_;
   const pid_t pid_ = getpid();
 };

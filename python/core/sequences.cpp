@@ -68,10 +68,10 @@ bool Signals::Raised() {
 }
 
 bool StepUntilSignal(WorldBatch& batch, double step_s, int count, std::span<const double> targets_m,
-                     Signals& signals) {
-  constexpr std::chrono::milliseconds kShort{25}, kLong{100};
-  constexpr int kFirst = 4096;  // steps of one world, which take some tens of milliseconds
-  int piece = std::max(1, kFirst / batch.worlds());
+                     Signals& signals, const std::function<void()>& between) {
+  const std::chrono::milliseconds shortest{between ? 4 : 25}, longest{between ? 16 : 100};
+  const int first = between ? 256 : 4096;  // steps of one world: a millisecond or some tens
+  int piece = std::max(1, first / batch.worlds());
   while (count > 0) {
     const auto start = std::chrono::steady_clock::now();
     const int now = std::min(piece, count);
@@ -82,8 +82,9 @@ bool StepUntilSignal(WorldBatch& batch, double step_s, int count, std::span<cons
     }
     count -= now;
     const auto took = std::chrono::steady_clock::now() - start;
-    if (took < kShort && piece < (1 << 20)) piece *= 2;
-    if (took > kLong) piece = std::max(1, piece / 2);
+    if (took < shortest && piece < (1 << 20)) piece *= 2;
+    if (took > longest) piece = std::max(1, piece / 2);
+    if (between) between();
     if (count > 0 && signals.Raised()) return false;
   }
   return true;

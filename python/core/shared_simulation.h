@@ -87,6 +87,7 @@ class SharedSimulation : public OwnedWorlds<Simulation> {
     const bool done = With([&](Simulation& s) {
       Signals signals;
       while (step(s)) {
+        ShowIfRequested(s);
         if (callbacks_->failed()) return true;
         if (signals.Raised()) return false;
       }

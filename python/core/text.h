@@ -38,6 +38,7 @@ void AddStudies(py::module_& module);
 void AddFits(py::module_& module);
 void AddAnalyses(py::module_& module);
 void AddLinear(py::module_& module);
+void AddLiveViews(py::module_& module);
 void AddCommand(py::module_& module);  ///< Only in wheels.
 
 /// Returns the folder of the files that come with taut, if it exists.

@@ -3,7 +3,7 @@
 import os
 from typing import Any, Optional, Sequence, Union
 
-from taut import _core
+from taut import _core, _live
 from taut._core import Experiment, Robot
 from taut._results import World, _world
 
@@ -55,6 +55,8 @@ class Simulation(_core.Simulation):
         if given is not None and worlds not in (1, len(given)):
             raise ValueError(f"worlds: {worlds}, but there are {len(given)} variants; pass either `worlds` or `variants`")
         super().__init__(what, worlds, given, threads, simd, controllers)
+
+    show = _live.show_simulation
 
     def __repr__(self) -> str:
         return f"<taut.Simulation: {self.worlds} world{'s' if self.worlds != 1 else ''}, {self.time_s().min():g} s>"
