@@ -31,11 +31,16 @@ def new_robot(taut, like, folder):
     return folder / "sam"
 
 
-def distance_m(taut, experiment, folder):
-    """Runs an experiment. Returns the horizontal distance of the center of mass from start to end."""
+def rows_of(taut, experiment, folder):
+    """Runs an experiment. Returns the rows of its trace."""
     call(taut, "run", experiment, "--quiet", "--csv", "--out", folder / "run")
     with open(folder / "run/trace.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
+        return list(csv.DictReader(file))
+
+
+def distance_m(taut, experiment, folder):
+    """Runs an experiment. Returns the horizontal distance of the center of mass from start to end."""
+    rows = rows_of(taut, experiment, folder)
     ends = [[float(row[f"system/com_{axis}_m"]) for axis in "xy"] for row in (rows[0], rows[-1])]
     return math.dist(*ends)
 
@@ -84,6 +89,37 @@ def LoadsOfTheTowerHaveSafetyFactors(taut, folder):
     rows = re.findall(r"^  \w+ +[\d.]+ node \S+ +([\d.]+) (?:strength|yield|buckling) ", said, re.MULTILINE)
     factors = [float(factor) for factor in rows]
     assert len(factors) == 4 and all(2 < factor < 50 for factor in factors), said
+    shown = call(taut, "analyze", ROOT / "share/robots/tower/loads.yaml", "--out", folder / "shapes")
+    assert (folder / "shapes/settlement/mode_1/trace.h5").exists(), shown
+
+
+def TheReadmesHaveTheDistancesOfTheFirstGaits(taut, folder):
+    found = []
+    for like in TEMPLATES:
+        text = (ROOT / f"share/robots/{like}/README.md").read_text()
+        for file, stated_m in re.findall(r"taut run (\w+\.yaml) +#.*: ([\d.]+) m in", text):
+            moved_m = distance_m(taut, ROOT / "share/robots" / like / file, folder)
+            assert f"{moved_m:.2f}" == stated_m, f"{like}: {moved_m} m, README: {stated_m} m"
+            found.append(like)
+    assert found == ["quadruped", "six_bar", "spine", "three_bar"], found
+
+
+def TheQuadrupedWalksAheadAndUpright(taut, folder):
+    """With its first gait, and with the best of the first 16 gaits of its study."""
+    robot = new_robot(taut, "quadruped", folder)
+    study = robot / "learn.yaml"
+    study.write_text(study.read_text().replace("evaluations: 64", "evaluations: 16"))
+    call(taut, "learn", study, "--quiet", "--out", folder / "learn")
+    call(taut, "learn", "--best", folder / "learn", "--quiet")
+    for experiment, least_m in ((robot / "trot.yaml", 0.5), (folder / "learn/best/inputs.yaml", 0.7)):
+        rows = rows_of(taut, experiment, folder)
+        ahead_m, aside_m, fall_m = (float(rows[-1][name]) - float(rows[0][name])
+                                    for name in (f"system/com_{axis}_m" for axis in "xyz"))
+        assert ahead_m > least_m and abs(aside_m) < 0.25 * ahead_m and abs(fall_m) < 0.02, (ahead_m, aside_m, fall_m)
+        for row in rows:
+            x, y = (float(row[f"body/vertebra_1/orientation_{axis}"]) for axis in "xy")
+            tilt_rad = math.acos(1 - 2 * (x * x + y * y))
+            assert tilt_rad < math.radians(6), f"{experiment}: {tilt_rad} rad at {row['time_s']} s"
 
 
 def LearningMovesTheRobot(taut, folder):
