@@ -185,9 +185,9 @@ class Signals {
 
 /// Steps the batch in pieces of a fraction of a second, bit-identically to `WorldBatch::Step`,
 /// under `targets_m` (worlds, cables), or under the present targets if it is empty. Returns false
-/// if a signal handler raised between two pieces: the worlds have then made fewer than `count` steps.
-/// The GIL must not be held. `between`: called between two pieces, which are then at most some
-/// milliseconds long.
+/// if a signal handler raised between two pieces: the worlds have then made fewer than `count`
+/// steps. The GIL must not be held. `between`: called between two pieces, which are then at most
+/// some milliseconds long.
 bool StepUntilSignal(WorldBatch& batch, double step_s, int count, std::span<const double> targets_m,
                      Signals& signals, const std::function<void()>& between = {});
 
