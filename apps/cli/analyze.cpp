@@ -11,6 +11,7 @@
 #include "analyze_inverse.h"
 #include "analyze_linear.h"
 #include "analyze_page.h"
+#include "analyze_path.h"
 #include "analyze_pose.h"
 #include "analyze_report.h"
 #include "analyze_shapes.h"
@@ -28,10 +29,12 @@ struct AnalyzeArguments {
   std::string path, page;
   std::vector<std::string> set, load_cases;
   int modes = 10;
-  bool tables = false, strict = false, backwards = false, form = false, linear = false;
+  bool tables = false, strict = false, backwards = false, form = false, linear = false,
+       follow = false;
   PoseArguments pose;
   InverseArguments inverse;       ///< Arguments of `--inverse`; `json` applies to all analyses.
   FormArguments forms;            ///< Arguments of `--form`; `out` also applies to shapes.
+  PathArguments load_path;        ///< Arguments of `--path`.
   LinearArguments linear_system;  ///< Arguments of `--linear` and `--response`.
 };
 
@@ -235,6 +238,11 @@ int Analyze(const AnalyzeArguments& args) {
   if (!CheckSupportsOf(args.path, result.robot.def, loaded->cases, result.notes, found)) {
     return Fail(found, kBadInput);
   }
+  if (args.follow) {
+    PathArguments path = args.load_path;
+    path.json = args.inverse.json, path.tables = args.tables;
+    return FollowPaths(args.path, result.robot, loaded->cases, result.notes, path);
+  }
   return Statics(args, *loaded, std::move(result));
 }
 
@@ -386,9 +394,22 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
                                       "Also write the load cases as an HTML page: members colored "
                                       "by utilization, displacements, modes, tables")
                          ->option_text("FILE");
+  auto* const path = analyze->add_flag(
+      "--path", args->follow,
+      "Load-displacement path of each load case, through limit points and slackening");
   for (const char* const other : {"--inverse", "--form", "--linear", "--response"}) {
     page->excludes(analyze->get_option(other));
+    path->excludes(analyze->get_option(other));
   }
+  for (const char* const other : {"--page", "--out", "--modes"}) {
+    path->excludes(analyze->get_option(other));
+  }
+  analyze
+      ->add_option("--to_factor", args->load_path.to_factor,
+                   "With --path: load factor at which the path ends (default: 2)")
+      ->option_text("NUMBER")
+      ->check(NumberWithin(1e-9, 1e9))
+      ->needs(path);
   analyze->add_flag("--strict", args->strict, kStrictHelp);
   analyze->footer(
       "Examples:\n"
@@ -399,6 +420,7 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "  taut analyze models/prism3.yaml --out shapes && taut view shapes/mode_1/trace.h5\n"
       "  taut analyze experiments/drop_six_strut.yaml --pose runs/drop_six_strut\n"
       "  taut analyze experiments/bridge_crowd.yaml --page analysis.html\n"
+      "  taut analyze experiments/dome_snow.yaml --load_case snow --path --to_factor 5\n"
       "  taut analyze models/prism3.yaml --linear prism.h5\n"
       "  taut analyze models/hanging_mass.yaml --response node/mass/force_z node/mass/position_z\n"
       "Equilibria, self-stress, --inverse and --form are static: independent of the step, with "

@@ -38,6 +38,7 @@
 #include "taut/learn.h"
 #include "taut/live.h"
 #include "taut/load_case.h"
+#include "taut/load_path.h"
 #include "taut/loads.h"
 #include "taut/matrix.h"
 #include "taut/member_def.h"

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/load_share.h"
 #include "analysis/minimum.h"
 #include "base/brief.h"
 #include "base/fixed.h"
@@ -17,15 +18,6 @@ using base::Brief;
 
 std::string Text(const Vec3& a) {
   return "(" + Brief(a.x) + ", " + Brief(a.y) + ", " + Brief(a.z) + ")";
-}
-
-LoadCaseSpec Share(const LoadCaseSpec& loads, double share) {
-  LoadCaseSpec part = loads;
-  for (auto& force : part.forces) force.force_n = share * force.force_n;
-  for (auto& settled : part.settlements) settled.by_m = share * settled.by_m;
-  for (auto& longer : part.cables) longer.by_m *= share;
-  for (auto& longer : part.bars) longer.by_m *= share;
-  return part;
 }
 
 /// Returns an error message for options or loads that the model does not allow; empty if all are
@@ -178,7 +170,7 @@ class Finder {
     Search last = search_;
     while (done < 1 && by > 1e-3) {
       const double share = std::min(1.0, done + by);
-      const LoadCaseSpec part = Share(loads_, share);
+      const LoadCaseSpec part = ShareOf(loads_, share);
       const Structure structure(def_, part, options_.contact);
       Search next = last;
       SearchLimits limits = limits_;
