@@ -72,7 +72,8 @@ export function number(value: number, digits = 3): string {
   const size = Math.abs(value);
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(digits - 1);
   if (Number.isInteger(value)) return String(value).replace("-", "−");
-  const decimals = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  // the size after rounding: 9.9996 has three digits as "10.0", not "10.00"
+  const decimals = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(Number(size.toPrecision(digits)))));
   return value.toFixed(Math.min(decimals, 6)).replace("-", "−");
 }
 

@@ -23,12 +23,13 @@ export class MockServer {
   next = 1;
 
   /** mode: live, replay; page: the file to serve at "/"; compared, more: entries of a replay's scene. */
-  constructor(page, { mode = "replay", compared = [], more = {}, hello = {} } = {}) {
+  constructor(page, { mode = "replay", compared = [], more = {}, hello = {}, tensions_n = {} } = {}) {
     this.page = page;
     this.mode = mode;
     this.compared = compared;
     this.more = more;
     this.hello = hello;
+    this.tensions_n = tensions_n; // by index of the cable, instead of those of the fixture
   }
 
   async start(port = 0) {
@@ -151,7 +152,7 @@ export class MockServer {
     const shown_s = this.shown_s;
     const pushes = this.pushed.filter(({ until_s }) => until_s > this.time_s)
       .map(({ node, force_n }) => [nodes.findIndex(({ name }) => name === node), ...force_n]);
-    const tensions = {};
+    const tensions = { ...this.tensions_n };
     if (this.dragged) {
       const place = nodes.findIndex(({ name }) => name === this.dragged.node);
       const at = worldPoint(nodes[place].body, nodes[place].position_m, this.time_s);

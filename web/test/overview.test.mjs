@@ -138,6 +138,14 @@ const statics = {
   modes: [16.9, 42].map((frequency_hz) => ({ kind: "elastic", frequency_hz, translation_m: [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 1]], rotation_rad: [[0, 0, 0.1], [0, 0, 0], [0, 0, 0]] })),
 };
 
+test("RoundingErrorsOfAPrestressMakeNoRange", async (t) => {
+  const near = [10, 9.9999999, 10.0000001, 9.9996, 10, 10];
+  const page = await opened({ mode: "model", more: { cables: withTags, statics }, tensions_n: near });
+  t.after(() => page.context().close());
+  await page.waitForFunction(() => document.querySelectorAll(".model tbody tr").length === 3);
+  assert.equal(await page.locator(".model tbody tr").first().locator("td").nth(1).innerText(), "10");
+});
+
 test("AModelShowsItsMembersAndModesInsteadOfEmptyPlots", async (t) => {
   const page = await opened({ mode: "model", more: { cables: withTags, bodies: withLimits, statics } });
   t.after(() => page.context().close());

@@ -285,6 +285,10 @@ test("AZoomAwayFromTheTimeStillGivesItsNumbers", async () => {
   await untilTime(page, 2.345);
   await page.waitForFunction(() => document.querySelector('[data-figure="tension:top_1"] .values').textContent.endsWith("N at 2.345 s"));
   assert.deepEqual((await beside()).numbers, at(2.345));
+  // in a narrow plot, numbers with their time do not cut the name
+  await page.addStyleTag({ content: ".chart { max-width: 130px; }" });
+  const cut = await page.locator(".chart .name:visible").evaluateAll((list) => list.filter((each) => each.scrollWidth > each.clientWidth).map(({ textContent }) => textContent));
+  assert.deepEqual(cut, []);
   // no label is needed inside
   await page.evaluate(() => window.taut.app.seek(7));
   await untilTime(page, 7);

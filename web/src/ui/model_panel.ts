@@ -56,9 +56,9 @@ export function modelPanel(app: App, player: ModePlayer, plots: HTMLElement, ana
   return element;
 }
 
-/** Formats the range of finite values. */
+/** Formats the range of finite values, rounded: equal values of a computed prestress differ in their last bits. */
 function range(values: readonly number[], digits = DIGITS): string {
-  const known = values.filter(Number.isFinite);
+  const known = values.filter(Number.isFinite).map((value) => Number(value.toPrecision(digits)));
   if (known.length === 0) return "–";
   const [least, most] = [Math.min(...known), Math.max(...known)].map((value) => number(value, digits)) as [string, string];
   return least === most ? least : `${least} to ${most}`;
