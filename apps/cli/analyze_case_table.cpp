@@ -23,8 +23,12 @@ double ReactionZ_n(const CaseResult& result) {
   return sum_n;
 }
 
+/// Displacements below it are rounding errors of the search for the equilibrium.
+constexpr double kNoMove_m = 1e-12;
+
 std::string DisplacementCell(const CaseResult& result) {
   if (result.move.name.empty()) return "-";
+  if (result.move.distance_m < kNoMove_m) return "0";
   return fmt::format("{:.4g} {}{}", 1000 * result.move.distance_m, result.move.name,
                      ExceedsDisplacement(result) ? " > limit" : "");
 }

@@ -63,12 +63,7 @@ std::vector<CaseResult::End> Ends(const ModelDef& def, const Equilibrium& at) {
 std::optional<CaseResult::Open> OpenForces(ModelDef def, const LoadCaseSpec& loads) {
   LoadCaseSpec there = loads;
   there.cables.clear();  // the pose already contains the changes of cables
-  for (const LoadCaseSpec::Settlement& settled : loads.settlements) {
-    JointDef& joint = def.joints[static_cast<std::size_t>(settled.joint)];
-    Vec3& in_world = IsFixed(def, joint.body_a) ? joint.from_m : joint.to_m;
-    in_world = {in_world.x + settled.by_m.x, in_world.y + settled.by_m.y,
-                in_world.z + settled.by_m.z};
-  }
+  MoveSupports(def, loads);
   there.settlements.clear();
   CaseResult::Open open;
   IntervalOptions options;
@@ -90,6 +85,15 @@ const MemberLoad* Least(const std::vector<MemberLoad>& members, const Factor& fa
 }
 
 }  // namespace
+
+void MoveSupports(ModelDef& def, const LoadCaseSpec& loads) {
+  for (const LoadCaseSpec::Settlement& settled : loads.settlements) {
+    JointDef& joint = def.joints[static_cast<std::size_t>(settled.joint)];
+    Vec3& in_world = IsFixed(def, joint.body_a) ? joint.from_m : joint.to_m;
+    in_world = {in_world.x + settled.by_m.x, in_world.y + settled.by_m.y,
+                in_world.z + settled.by_m.z};
+  }
+}
 
 const MemberLoad* CaseResult::LeastSafe() const {
   return Least(members, [](const MemberLoad& load) { return load.Least(); });

@@ -41,6 +41,10 @@ struct CaseResult {
   const MemberLoad* FirstSlack() const;
 };
 
+/// Moves the ends of the supports in the world by the settlements of a load case, as in its
+/// equilibrium.
+void MoveSupports(ModelDef& def, const LoadCaseSpec& loads);
+
 /// Solves each load case independently of the others.
 std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCaseSpec>& cases,
                                    bool with_modes);

@@ -30,6 +30,7 @@ int WriteShapes(const std::string& folder, const ExperimentSpec& experiment,
     if (!one.modes) continue;
     ExperimentSpec there = experiment;  // modes are small motions about the equilibrium
     there.robot = RobotAt(experiment.robot, one.at.pose);
+    MoveSupports(there.robot.def, one.loads);
     const std::string where = result.cases.size() == 1
                                   ? folder
                                   : (std::filesystem::path(folder) / one.loads.name).string();

@@ -13,6 +13,9 @@
 namespace taut {
 namespace {
 
+/// Relative change of a tension that a load causes only by the rounding of its equilibrium.
+constexpr double kNoChange = 1e-9;
+
 /// Computes the safety factors of a cross section (eq. 9 to 11).
 void TakeSection(const MemberDef& member, double length_m, MemberLoad& load) {
   const MemberLimits bears = LimitsOf(member, load.kind, length_m);
@@ -72,7 +75,8 @@ std::vector<MemberLoad> MemberLoads(const ModelDef& def, const MemberForces& now
     TakeSection(cable.member, 0, load);
     if (unloaded != nullptr) {
       const double before_n = unloaded->cable_tension_n[c];
-      if (before_n > load.greatest_n) load.slackening = before_n / (before_n - load.greatest_n);
+      if (before_n - load.greatest_n > kNoChange * before_n)
+        load.slackening = before_n / (before_n - load.greatest_n);
     }
     out.push_back(std::move(load));
   }

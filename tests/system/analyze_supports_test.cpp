@@ -1,6 +1,7 @@
 // `taut analyze` of supported structures: rigid motions, missing supports, warnings about large
 // displacements, safety factors and slack
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "system/taut_command.h"
@@ -70,6 +71,19 @@ TEST_F(AnalyzeSupports, ATowerOnTooFewSupportsIsRefusedBeforeItIsSolved) {
   WriteTower(0);
   shown = Taut({"analyze", "tower.yaml"});
   EXPECT_EQ(shown.status, 0) << shown.errors;
+}
+
+/// The modes of a structure with a settled support swing about its equilibrium on this support.
+TEST_F(AnalyzeSupports, ShapesOfASettledStructureAreWritten) {
+  WriteTower(3);
+  const test::CommandResult shown = Taut({"analyze", "loads.yaml", "--out", "shapes"});
+  EXPECT_EQ(shown.status, 0) << shown.errors;
+  for (const char* const name : {"own", "lift", "settled"}) {
+    EXPECT_TRUE(std::filesystem::exists(Path(std::string("shapes/") + name + "/mode_1/trace.h5")))
+        << name;
+  }
+  EXPECT_NE(shown.output.find("next: taut view shapes/own/mode_1/trace.h5"), std::string::npos)
+      << shown.output;
 }
 
 TEST_F(AnalyzeSupports, SafetyAndSlackAreNumbersOfTheirOwn) {

@@ -41,6 +41,19 @@ ModelDef Members() {
   return def;
 }
 
+/// An equilibrium is found with a rounding error, which is no effect of the load.
+TEST(Safety, ATensionThatOnlyRoundingReducesHasNoFactorOfSlack) {
+  MemberForces now, before;
+  now.cable_tension_n = {100 * (1 - 1e-12), 100 * (1 - 1e-6)};
+  now.bar_force_n = {0, 0};
+  now.struts = {{0, {0, 0, 0}}};
+  before = now;
+  before.cable_tension_n = {100, 100};
+  const auto loads = MemberLoads(Members(), now, &before);
+  EXPECT_FALSE(loads[0].slackening);
+  EXPECT_NEAR(loads[1].slackening.value_or(0), 1e6, 1);
+}
+
 TEST(Safety, FactorsAreThoseOfTheHandbook) {
   MemberForces now;
   now.cable_tension_n = {100, 0};
