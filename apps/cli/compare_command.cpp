@@ -54,6 +54,10 @@ void PrintComparison(const Comparison& comparison, const CompareArguments& given
 
 void SayNextStep(const CompareArguments& given) {
   if (!given.page.empty()) {
+    if (!given.measured && given.map_a.empty()) {
+      SayFigure({given.path_a, given.path_b}, given.page);
+      return SayNextProgram({"xdg-open", given.page});
+    }
     // Only the reference can have a mapping in `taut plot`.
     std::vector<std::string> measured{"--with", given.path_b};
     if (!given.map_b.empty()) measured.insert(measured.end(), {"--map", given.map_b});
@@ -105,7 +109,8 @@ int RunCompare(CompareArguments given) {
     return kBadInput;
   }
   if (!given.page.empty()) {
-    const std::string page = ComparisonPage(comparison, *a, *b, given.path_a, given.path_b);
+    const std::string page =
+        ComparisonPage(comparison, *a, *b, given.path_a, given.path_b, given.measured);
     if (const int failed = WriteNamed(given.page, page); failed != kOk) return failed;
     if (!given.json) fmt::print("Page: {}\n", given.page);
   }

@@ -161,9 +161,11 @@ std::vector<std::string> MeasuredVerdict(const Comparison& comparison, const std
                                          const std::string& name_b);
 
 /// Returns a self-contained HTML page: the verdict, and for each group of channels its errors, bars
-/// of bias and RMSE, a scatter plot of measured against simulated values, and curves.
+/// of bias and RMSE, a scatter plot of measured against simulated values, and curves. `measured`:
+/// `b` is a measurement and `a` a simulation; otherwise both are runs, and the page begins with the
+/// lines of `ComparisonLines` in place of the verdict.
 std::string ComparisonPage(const Comparison& comparison, const Trace& a, const Trace& b,
-                           const std::string& name_a, const std::string& name_b);
+                           const std::string& name_a, const std::string& name_b, bool measured);
 
 /// Formats the comparison as text tables for a terminal. `name_a`, `name_b`: names of the traces.
 std::string ComparisonTable(const Comparison& comparison, const std::string& name_a,

@@ -1,4 +1,4 @@
-// Comparison of a simulation with a measurement as a self-contained HTML page.
+// Comparison of two runs, or of a simulation with a measurement, as a self-contained HTML page.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,12 +71,12 @@ std::string GroupTable(const compare::Group& group) {
   return compare::HtmlTable(rows);
 }
 
-/// Returns the measured over the simulated values of a group, with the line of equality.
+/// Returns the values of b over the values of a, with the line of equality.
 std::string Scatter(const compare::Group& group, const Trace& a, const Trace& b,
-                    const Comparison& comparison) {
+                    const Comparison& comparison, bool measured) {
   compare::Plot plot{compare::GroupTitle(group),
-                     "a (simulated)",
-                     "b (measured)",
+                     measured ? "a (simulated)" : "a",
+                     measured ? "b (measured)" : "b",
                      {{"fitted", {}, true}, {"held", {}}},
                      {},
                      {}};
@@ -90,10 +90,10 @@ std::string Scatter(const compare::Group& group, const Trace& a, const Trace& b,
     for (const auto& point : of_b) times_s.push_back(point.first);
     const auto of_a = compare::Interpolate(a.time_s, a.values[*in_a], gaps, times_s);
     for (std::size_t i = 0; i < of_b.size(); ++i) {
-      const double simulated = of_a[i], measured = of_b[i].second;
-      if (!std::isfinite(simulated) || !std::isfinite(measured)) continue;
-      plot.series[1].points.emplace_back(simulated, measured);
-      low = std::min(low, simulated), high = std::max(high, simulated);
+      const double x = of_a[i], y = of_b[i].second;
+      if (!std::isfinite(x) || !std::isfinite(y)) continue;
+      plot.series[1].points.emplace_back(x, y);
+      low = std::min(low, x), high = std::max(high, x);
     }
   }
   compare::Points& points = plot.series[1].points;
@@ -124,22 +124,24 @@ std::string Curves(const compare::Group& group, const Trace& a, const Trace& b,
 }  // namespace
 
 std::string ComparisonPage(const Comparison& comparison, const Trace& a, const Trace& b,
-                           const std::string& name_a, const std::string& name_b) {
-  std::string out = compare::PageHead("Simulation and measurement", "comparison") +
+                           const std::string& name_a, const std::string& name_b, bool measured) {
+  const std::string title = measured ? "Simulation and measurement" : "Two runs";
+  std::string out = compare::PageHead(title, "comparison") +
                     "<p class=\"note\">a: " + compare::Escaped(name_a) +
                     ", b: " + compare::Escaped(name_b) + "; differences are a - b; taut " +
                     kVersion + "</p>\n<div class=\"verdict\">";
-  for (const std::string& line : MeasuredVerdict(comparison, name_a, name_b)) {
+  for (const std::string& line : measured ? MeasuredVerdict(comparison, name_a, name_b)
+                                          : ComparisonLines(comparison, name_a, name_b)) {
     out += compare::Escaped(line) + "<br>\n";
   }
-  out +=
-      "</div>\n<p class=\"key\"><span><i class=\"dot fitted\"></i>a, "
-      "simulated</span><span><i class=\"dot held\"></i>b, "
-      "measured</span></p>\n";
+  out += fmt::format(
+      "</div>\n<p class=\"key\"><span><i class=\"dot fitted\"></i>a{}</span>"
+      "<span><i class=\"dot held\"></i>b{}</span></p>\n",
+      measured ? ", simulated" : "", measured ? ", measured" : "");
   std::size_t plots = 0;
   for (const compare::Group& group : compare::GroupsOf(comparison.channels)) {
     out += "<h2>" + compare::Escaped(compare::GroupTitle(group)) + "</h2>\n";
-    out += GroupTable(group) + Bars(group) + Scatter(group, a, b, comparison) + "<br>\n" +
+    out += GroupTable(group) + Bars(group) + Scatter(group, a, b, comparison, measured) + "<br>\n" +
            Curves(group, a, b, comparison, plots);
   }
   if (plots > kMostPlots) {

@@ -62,7 +62,7 @@ TEST(MeasuredVerdictTest, WithoutPatternsThereAreTwoLines) {
 
 TEST(MeasuredVerdictTest, ThePageHasTheVerdictBarsScatterAndCurves) {
   const Trace a = Measured(0, 0), b = Measured(0.6, 0);
-  const std::string page = ComparisonPage(Compare(a, b, {}), a, b, "run <1>", "lab.csv");
+  const std::string page = ComparisonPage(Compare(a, b, {}), a, b, "run <1>", "lab.csv", true);
   for (const char* part :
        {"run &lt;1&gt;", "by a nearly constant amount", "bias (filled) and RMSE (outline)",
         "a (simulated)", "cable/a/tension_n [N]", "<th>lag [s]</th>", "polyline", "</html>"}) {
@@ -70,6 +70,18 @@ TEST(MeasuredVerdictTest, ThePageHasTheVerdictBarsScatterAndCurves) {
   }
   EXPECT_EQ(page.find("run <1>"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST(MeasuredVerdictTest, ThePageOfTwoRunsCallsNeitherAMeasurement) {
+  const Trace a = Measured(0, 0), b = Measured(0.6, 0);
+  const std::string page = ComparisonPage(Compare(a, b, {}), a, b, "runs/a", "runs/b", false);
+  for (const char* part :
+       {"<h1>Two runs</h1>", "runs/a and runs/b differ in", "cable/a/tension_n"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  for (const char* word : {"measure", "simulat", "clock of the log"}) {
+    EXPECT_EQ(page.find(word, page.find("<main>")), std::string::npos) << word;
+  }
 }
 
 }  // namespace
