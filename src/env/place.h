@@ -17,7 +17,7 @@ struct Place {
 
 inline Aligned<char> ScratchFor(WorldBatch& batch) {
   const BatchInside::Impl& of = BatchInside::Of(batch);
-  return AllocateAligned<char>(of.kernel->scratch_bytes(of.view));
+  return AllocateScratch(*of.kernel, of.view);
 }
 
 /// Lends the thread's scratch memory to a group's batch for the lifetime of this object. The memory

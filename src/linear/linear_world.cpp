@@ -48,8 +48,7 @@ World<Dual>::World(std::shared_ptr<const Model> model, const WorldBatch& at, dou
       good_(batch_.lanes() == 2) {
   if (!good_) return;
   inside_->kernel = &kKernelDual;
-  inside_->scratch[0] = AllocateAligned<char>(kKernelDual.scratch_bytes(inside_->view));
-  kKernelDual.lay_out(inside_->view, inside_->scratch[0].get());
+  inside_->scratch[0] = AllocateScratch(kKernelDual, inside_->view);
   Reset();
 }
 

@@ -88,8 +88,9 @@ inline void Scatter(WorldBatch& batch, int world, int seed) {
   const ModelDef& def = batch.model().def();
   Dice dice(seed);
   const int bodies = static_cast<int>(def.bodies.size());
-  const Vec3 together = dice.Roll3(0.2), speed = dice.Roll3(0.5);
+  const Vec3 together = dice.Roll3(0.2);
   const bool jointed = !def.joints.empty();  // then all bodies move alike
+  const Vec3 speed = jointed ? dice.Roll3(0.5) : Vec3{};
   for (int b = 0; b < bodies; ++b) {
     batch.SetParameter(world, Parameter::kBodyMass, b,
                        def.bodies[static_cast<std::size_t>(b)].mass_kg * (1 + dice.Roll(0.2)));

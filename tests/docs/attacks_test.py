@@ -18,7 +18,8 @@ def names():
         found |= {f"Fuzz.{name}" for name in re.findall(r"^taut_fuzz\((\w+) ", path.read_text(), re.M)}
     found |= {f"Faults.{name}" for name in re.findall(r"^def ([A-Z]\w+)", (TESTS / "faults/faults_test.py").read_text(), re.M)}
     found |= {f"Faults.{name}" for name in re.findall(r"\b([a-z_]+):\d+", (TESTS / "faults/CMakeLists.txt").read_text())}
-    found |= {f"NewRobot.{name}" for name in re.findall(r"^def ([A-Z]\w+)", (TESTS / "system/new_robot_test.py").read_text(), re.M)}
+    for suite, script in (("NewRobot", "new_robot_test"), ("Pipes", "pipes_test")):
+        found |= {f"{suite}.{name}" for name in re.findall(r"^def ([A-Z]\w+)", (TESTS / f"system/{script}.py").read_text(), re.M)}
     for path in (TESTS / "python").glob("*_test.py"):
         for suite in ast.parse(path.read_text()).body:
             if isinstance(suite, ast.ClassDef):

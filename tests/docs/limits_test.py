@@ -43,6 +43,7 @@ CONSTANTS = {
     "elements and comments": ("src/mjcf/xml.cpp", "kMostElements"),
     "attributes of": ("src/mjcf/xml.cpp", "kMostAttributes"),
     "files of": ("src/mjcf/xml.cpp", "kMostFiles"),
+    "nesting of groups in an HDF5 trace": ("src/trace/hdf5_links.cpp", "kMostGroups"),
     "nesting of MJCF elements, with": ("src/mjcf/xml.cpp", "kDeepest"),
     "geoms of": ("src/mjcf/read_bodies.cpp", "kMostGeoms"),
     "nodes of an NTRT structure": ("src/import_ntrt/ntrt_structure.h", "kMostItems"),

@@ -111,8 +111,8 @@ TEST_F(Learn, AnotherBuildThatGivesOtherNumbersIsRefused) {
   EXPECT_EQ(result.status, 3);
   EXPECT_EQ(
       result.errors,
-      "run/study.sqlite: error: the folder contains another study: evaluation 0 now ends in a "
-      "different state (another build of taut wrote it; choose another folder with `--out`)\n");
+      "run/study.sqlite: error: another build of taut wrote the folder: evaluation 0 now ends in a "
+      "different state (choose another folder with `--out`)\n");
 }
 
 TEST_F(Learn, AFolderOfAnotherVersionGoesOnIfItsNumbersAreTheSame) {

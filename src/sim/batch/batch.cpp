@@ -127,8 +127,7 @@ WorldBatch::Impl::Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& 
     groups[g].status = status.data() + g * static_cast<std::size_t>(n);
   }
   for (int i = 0; i < pool.threads(); ++i) {
-    scratch.push_back(AllocateAligned<char>(kernel->scratch_bytes(view)));
-    kernel->lay_out(view, scratch.back().get());
+    scratch.push_back(AllocateScratch(*kernel, view));
   }
   // Unused lanes after the last world contain a world, too. Steps then need no special cases for
   // these lanes and find no NaN in them.

@@ -41,6 +41,13 @@ Aligned<T> AllocateAligned(std::size_t count) {
   return Aligned<T>(reinterpret_cast<T*>(aligned), Free{first});
 }
 
+/// Allocates the memory of a step for one thread, and divides it for the model of `view`.
+inline Aligned<char> AllocateScratch(const sim::Kernel& kernel, const sim::View& view) {
+  Aligned<char> scratch = AllocateAligned<char>(kernel.scratch_bytes(view));
+  kernel.lay_out(view, scratch.get());
+  return scratch;
+}
+
 struct WorldBatch::Impl {
   Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& o);
 

@@ -218,6 +218,7 @@ TEST(FormFinding, WrongInputsAreComplainedOf) {
   EXPECT_FALSE(FindFreeForm(net, {0, 0}, out).found);
   EXPECT_EQ(out.Format(),
             "error: FindFreeForm does not support nets with fixed nodes (call FindNetForm)\n"
+            "error: `group` has 2 entries for 1 members (give the group of each member)\n"
             "error: groups must be numbered from 0, each with at least one member\n"
             "error: member 0 does not connect two nodes of the net\n"
             "error: member 1 does not connect two nodes of the net\n"
@@ -226,8 +227,7 @@ TEST(FormFinding, WrongInputsAreComplainedOf) {
             "node to a fixed one; tensions and compressions must not cancel)\n"
             "error: the net has 2 flags of fixed nodes for 3 nodes\n"
             "error: there are 1 loads for 3 nodes\n"
-            "error: there are 2 force densities for 1 members\n"
-            "error: there are 2 groups for 1 members\n");
+            "error: there are 2 force densities for 1 members\n");
   EXPECT_EQ(FindFreeForm(net, {0}, out).why,
             "the net needs at least five nodes, not all in one plane");
 

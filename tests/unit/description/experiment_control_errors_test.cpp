@@ -213,7 +213,7 @@ TEST_F(ExperimentErrors, DragsMove) {
   expect("name: pull, node: a1, velocity_m_per_s: [1, 0, 0]" + rest, "");
   expect("name: pull, node: a1, velocity_m_per_s: [0, 0, 0]" + rest,
          "trial.yaml:20:36: error: drag.velocity_m_per_s must not be zero (the force is measured "
-         "along it)\n");
+         "along the velocity)\n");
   expect("name: pull, node: c, velocity_m_per_s: [1, 0, 0]" + rest,
          "trial.yaml:20:32: error: there is no node \"c\" (one of: a0, a1, b0, b1)\n");
   expect(
