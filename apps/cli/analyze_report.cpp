@@ -127,7 +127,8 @@ std::string Verdict(const CaseResult& result) {
     text += fmt::format("  least safety factor: {} ({} of {})\n", FactorCell(least->Least()),
                         least->LeastOf(), least->name);
   }
-  if (const MemberLoad* const first = result.FirstSlack()) {
+  // After a cable is slack, tensions no longer change in proportion to the load.
+  if (const MemberLoad* const first = slack.empty() ? result.FirstSlack() : nullptr) {
     text += fmt::format("  first slack: {} at {} times the load\n", first->name,
                         FactorCell(first->slackening));
   }

@@ -95,6 +95,9 @@ struct ChannelComparison {
   /// The best lag is the largest one searched; the true lag may be larger.
   bool lag_at_limit = false;
   double correlation = 0.0;      ///< Correlation at `lag_s`, -1..1.
+  /// RMS of the difference without bias at `lag_s`, relative to the RMS without lag. A decaying
+  /// signal correlates with an earlier, larger part of itself, although the difference grows.
+  double lag_rms_ratio = 1.0;
   Extreme max_a, max_b;          ///< Over the rows of each trace, within the time range of both.
   double max_error_percent = 0;  ///< Relative error of the maximum: (max_a - max_b) / |max_b|.
   struct Phase {

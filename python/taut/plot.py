@@ -83,6 +83,13 @@ def _quantity(name, unit):
     return word.replace("_", " ") + (f" [{unit}]" if unit not in ("", "1") else "")
 
 
+def _clipped(phases, from_s, to_s):
+    """Returns the parts of the phases within a time span."""
+    parts = [(name, begin if from_s is None else max(begin, from_s), end if to_s is None else min(end, to_s))
+             for name, begin, end in phases]
+    return [part for part in parts if part[1] < part[2]]
+
+
 def _shade(axes, phases, named):
     for i, (name, from_s, to_s) in enumerate(phases):
         if i % 2 == 0:
@@ -92,11 +99,11 @@ def _shade(axes, phases, named):
                           textcoords="offset points", ha="center", va="bottom", fontsize="small", annotation_clip=True)
 
 
-def _legend(axes, height_mm, entries):
-    """Adds a legend below axes of this height, where it hides no data."""
-    ticks_and_label_mm = 10
+def _legend(axes, width_mm, height_mm, entries):
+    """Adds a legend below axes of this height in a figure of this width, where it hides no data."""
+    ticks_and_label_mm, column_mm = 10, 35
     axes.legend(loc="upper left", bbox_to_anchor=(0, -ticks_and_label_mm / height_mm), frameon=False, fontsize="small",
-                ncols=min(4, entries), borderaxespad=0, handlelength=1.5, columnspacing=1)
+                ncols=max(1, min(4, int(width_mm / column_mm), entries)), borderaxespad=0, handlelength=1.5, columnspacing=1)
 
 
 def _window(trace, name, from_s, to_s):
@@ -158,6 +165,7 @@ def _write(out, suffix, traces, measured, units, layout, labels, phases, span, w
         raise ImportError("plots need matplotlib: pip install matplotlib, or apt install python3-matplotlib") from error
 
     names = list(units)
+    phases = _clipped(phases, *span)
     layout = layout or ("one" if len(names) <= len(COLORS) and len(set(units.values())) == 1 else "many")
     columns = 1 if layout == "one" else min(3, math.ceil(math.sqrt(len(names))))
     lines = 1 if layout == "one" else math.ceil(len(names) / columns)
@@ -176,7 +184,7 @@ def _write(out, suffix, traces, measured, units, layout, labels, phases, span, w
             if measured is not None:
                 axes.plot([], [], "o", color="0.3", markersize=2, label="measured")
             if entries > 1 or measured is not None:
-                _legend(axes, 0.7 * height_mm, entries + (measured is not None))
+                _legend(axes, width_mm, 0.7 * height_mm, entries + (measured is not None))
             _shade(axes, phases, True)
         else:
             flat = [axes for line in grid for axes in line]
@@ -194,7 +202,7 @@ def _write(out, suffix, traces, measured, units, layout, labels, phases, span, w
             if measured is not None:
                 lowest.plot([], [], "o", color="0.3", markersize=2, label="measured")
             if len(traces) > 1 or measured is not None:
-                _legend(lowest, 0.5 * height_mm / lines, len(traces) + (measured is not None))
+                _legend(lowest, width_mm, 0.5 * height_mm / lines, len(traces) + (measured is not None))
         # Without a date, the same data give the same bytes.
         figure.savefig(out, format=suffix[1:], dpi=dpi, metadata={".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(suffix))
     return figure

@@ -227,6 +227,7 @@ void ChannelComparer::SetLag(const Columns& of, ChannelComparison& result) const
   result.lag_s = rows == 0 ? kUnknownValue : lag.rows * step_s_;
   result.lag_at_limit = rows > 0 && lag.at_limit;
   result.correlation = lag.correlation;
+  result.lag_rms_ratio = lag.rms_ratio;
 }
 
 }  // namespace taut::compare

@@ -48,6 +48,21 @@ Moments FiniteMoments(const double* a, const double* b, std::size_t count) {
   return m;
 }
 
+/// Returns the RMS of the difference of `count` rows without its mean. Skips pairs with values that
+/// are not finite.
+double RmsOfDifference(const double* a, const double* b, std::size_t count) {
+  double rows = 0.0, sum = 0.0, squares = 0.0;
+  const auto each = [&](const auto& use) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (std::isfinite(a[i]) && std::isfinite(b[i])) use(a[i] - b[i]);
+    }
+  };
+  each([&](double d) { rows += 1.0, sum += d; });
+  const double mean = sum / rows;
+  each([&](double d) { squares += (d - mean) * (d - mean); });
+  return std::sqrt(squares / rows);
+}
+
 /// Computes correlations of a fixed range of a with shifted b. If all rows are finite, the part of
 /// a is computed once, and four accumulators sum, so that compilers vectorize the loop.
 class Correlator {
@@ -119,9 +134,14 @@ Lag FindLag(const std::vector<double>& a, const std::vector<double>& b, int max_
       best = static_cast<std::ptrdiff_t>(i);
     }
   }
-  if (best < 0) return {kNan, false, kNan};
+  if (best < 0) return {kNan, false, kNan, kNan};
+  const double* const from = a.data() + begin;
+  const double* const to = b.data() + begin;
+  const std::size_t count = rows - 2 * begin;
+  const double without = RmsOfDifference(from, to, count);
   Lag result{static_cast<double>(best - margin), best == 0 || best == 2 * margin,
-             at[static_cast<std::size_t>(best)]};
+             at[static_cast<std::size_t>(best)],
+             RmsOfDifference(from, to + (best - margin), count) / without};
   if (!result.at_limit) {
     const double before = at[static_cast<std::size_t>(best) - 1];
     const double after = at[static_cast<std::size_t>(best) + 1];

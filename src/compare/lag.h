@@ -9,6 +9,9 @@ struct Lag {
   double rows = 0.0;         ///< Positive: b is delayed. NaN if undefined.
   bool at_limit = false;     ///< Whether the best lag is the longest one searched.
   double correlation = 0.0;  ///< Pearson's correlation at this lag; NaN if undefined.
+  /// RMS of the difference without its mean at this lag (whole rows), relative to the RMS without
+  /// lag; NaN if undefined.
+  double rms_ratio = 0.0;
 };
 
 /// Finds the lag, of at most `max_rows` rows, at which a[i] and b[i + lag] correlate best. A

@@ -13,8 +13,9 @@ namespace {
 
 /// A bias explains an error if it is at least this share of the RMSE, in all channels.
 constexpr double kMostlyBias = 0.7;
-/// Smallest correlation at which the lag of a channel counts.
-constexpr double kCorrelated = 0.5;
+/// Smallest correlation at which the lag of a channel counts, and largest RMS of the difference at
+/// this lag, relative to the RMS without lag.
+constexpr double kCorrelated = 0.5, kCloser = 0.9;
 
 double MedianOf(std::vector<double> values) {
   if (values.empty()) return NAN;
@@ -87,7 +88,8 @@ std::string BiasLine(const compare::Group& group) {
 std::string LagLine(const compare::Group& group, double step_s) {
   std::vector<double> lags;
   for (const auto& [name, c] : group.rows) {
-    if (std::isfinite(c->lag_s) && c->correlation > kCorrelated && !c->lag_at_limit) {
+    const bool closer = c->lag_rms_ratio < kCloser;
+    if (std::isfinite(c->lag_s) && c->correlation > kCorrelated && closer && !c->lag_at_limit) {
       lags.push_back(c->lag_s);
     }
   }

@@ -11,7 +11,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 try:
-    import matplotlib  # noqa: F401
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
 except ImportError:
     print("skipped: no matplotlib")
     sys.exit(77)
@@ -109,3 +109,11 @@ assert plots.phases_of(RUN) == []
 assert plots.phases_of(folder / "trace_2.h5") == plots.phases_of(folder / "lab.csv") == []
 (folder / "summary_2.json").write_text(json.dumps({"phases": [{"name": "q", "from_s": 1, "to_s": 2}]}))
 assert plots.phases_of(folder / "trace_2.h5") == [("q", 1, 2)]
+
+# Phases outside the time span do not extend the axis, and the legend stays in the page.
+limited = plots.plot(RUN, folder / "n.png", "cable/*", RUN, layout="one", phases=[("a", 0, 1), ("b", 1, 2), ("c", 2, 60)],
+                     to_s=2, dpi=50)
+assert limited.axes[0].get_xlim()[1] < 2.2, limited.axes[0].get_xlim()
+FigureCanvasAgg(limited).draw()
+box = limited.axes[0].get_legend().get_window_extent()
+assert 0 <= box.x0 and box.x1 <= limited.bbox.x1, (box, limited.bbox)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "taut/compare.h"
 
@@ -46,6 +47,32 @@ TEST(MeasuredVerdictTest, ACommonDelayIsNamed) {
   ASSERT_EQ(lines.size(), 3u) << lines.back();
   EXPECT_EQ(lines[2].find("b is later than a by 0.05 s (median of 2): check the clock"), 0u)
       << lines[2];
+}
+
+/// Tensions that settle from a start, with noise in the measurement and a gain of its load cells.
+Trace Settling(double gain, double noise_n, double late_s) {
+  Trace trace;
+  trace.channels = {{"cable/a/tension_n", "N"}, {"cable/b/tension_n", "N"}};
+  trace.values.resize(2);
+  std::uint64_t state = 7;
+  const auto noise = [&] {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return noise_n * (static_cast<double>(state >> 11) / 4503599627370496.0 - 1);
+  };
+  for (int i = 0; i <= 1000; ++i) {
+    const double t = 0.02 * i, left = std::exp(-(t - late_s) / 0.4);
+    trace.time_s.push_back(t);
+    trace.values[0].push_back(gain * (10 + 8 * left) + noise());
+    trace.values[1].push_back(gain * (7 - 5 * left) + noise());
+  }
+  return trace;
+}
+
+TEST(MeasuredVerdictTest, AGainOfCellsThatSettleIsNoDelay) {
+  for (const std::string& line : VerdictOf(Settling(1, 0, 0), Settling(0.93, 0.25, 0))) {
+    EXPECT_EQ(line.find("earlier"), std::string::npos) << line;
+    EXPECT_EQ(line.find("later"), std::string::npos) << line;
+  }
 }
 
 TEST(MeasuredVerdictTest, WithoutPatternsThereAreTwoLines) {
