@@ -94,7 +94,7 @@ struct ChannelComparison {
   double lag_s = 0.0;  ///< Delay of b relative to a with the highest correlation.
   /// The best lag is the largest one searched; the true lag may be larger.
   bool lag_at_limit = false;
-  double correlation = 0.0;      ///< Correlation at `lag_s`, -1..1.
+  double correlation = 0.0;  ///< Correlation at `lag_s`, -1..1.
   /// RMS of the difference without bias at `lag_s`, relative to the RMS without lag. A decaying
   /// signal correlates with an earlier, larger part of itself, although the difference grows.
   double lag_rms_ratio = 1.0;
