@@ -14,7 +14,7 @@ std::vector<double> Starts(const FitProblem& problem) {
   return starts;
 }
 
-/// Sums of squares of the rows of some groups.
+/// Sums of the squared residuals of some groups, before and after the fit.
 struct Squares {
   std::size_t count = 0;
   double untuned = 0, fitted = 0;

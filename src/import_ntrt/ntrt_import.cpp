@@ -135,7 +135,7 @@ std::optional<NtrtImport> ImportNtrt(const std::string& path, const NtrtOptions&
   if (built.solids.empty() && out.items().size() == errors_before) {
     out.Error("ntrt.no_solid", {path, 0, 0}, "the builders of this structure build no solid",
               "builders for its tags, such as tgRodInfo, may be in a file that includes this one, "
-              "or after a line that begins with %");
+              "or, with --like_ntrt, after a line that begins with %, which ends the file");
   }
   if (out.items().size() != errors_before) return std::nullopt;
 

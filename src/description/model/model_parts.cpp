@@ -105,7 +105,7 @@ void CheckRoute(const MapReader& map, const PairsText& pairs) {
                       "leave out `friction` there");
     } else if (!end && route[i].is_drum()) {
       scope.out.Error("route.drum_inside", route[i].at, what + " has a drum between its ends",
-                      "use a `pulley` there: a cable can only end on a drum");
+                      "use a `pulley` there: drums are allowed only at the ends of a cable");
     }
   }
 }

@@ -7,8 +7,8 @@
 namespace taut::description {
 
 /// Reports objects so far from the origin that the rounding of positions is too coarse for the
-/// robot. `place`: position of the start pose in an experiment file; replaces the model's nodes in
-/// messages.
+/// robot. `place`: line and column of the start pose in an experiment file; errors about nodes then
+/// refer to this line, not to the model file.
 void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* place = nullptr);
 
 /// Returns whether positions at this distance from the origin are rounded too coarsely for the

@@ -7,8 +7,8 @@
 namespace taut::sim {
 
 /// Fills scratch memory, contact rows unused in the last step, and reading rows with NaN, before a
-/// step and before an update of readings. Lanes after the last world contain worlds, too, and keep
-/// their values. Returns whether the memory was filled.
+/// step and before an update of readings. Unused lanes of the last group
+/// also contain a valid state (batch.cpp), which is kept. Returns whether the memory was filled.
 template <class W>
 bool Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
             [[maybe_unused]] const Group& g, [[maybe_unused]] Scratch<W>& work) noexcept {

@@ -47,7 +47,8 @@ bool IsHeld(const Found* all, int count, int which, double tolerance_m) noexcept
   return false;
 }
 
-/// Returns whether one direction precedes another, in an order that remains while shapes slide.
+/// Returns whether `a` precedes `b` lexicographically. The order of normals does not change while
+/// shapes slide.
 bool Before(const Vec3& a, const Vec3& b) noexcept {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }

@@ -10,7 +10,7 @@ ShapePose PoseAfter(const MovingShape& s, double t) noexcept {
   ShapePose pose = s.at;
   const Vec3 turn = t * Load(s.w);
   const double angle2 = Dot(turn, turn);
-  const Vec3 half = (0.5 * (1.0 + angle2 / 12.0)) * turn;  // tan(angle / 2), as in a drift
+  const Vec3 half = (0.5 * (1.0 + angle2 / 12.0)) * turn;  // tan(angle / 2), as in position updates
   const double scale = 2.0 / (1.0 + Dot(half, half));
   for (int k = 0; k < 3; ++k) {
     const Vec3 column{s.at.r[k], s.at.r[3 + k], s.at.r[6 + k]};

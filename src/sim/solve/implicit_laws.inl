@@ -17,8 +17,9 @@
 
 namespace taut::sim {
 
-// Inverse effective masses for natural maps and solutions of single laws: a block of W, row by row.
-// Laws without a block keep the values from the bodies.
+// Sets the inverse effective masses of a law from its diagonal block of the Delassus matrix. `w`:
+// first element of the block; `stride`: distance between its rows. Natural maps and solutions of
+// single laws use these masses. Laws without a block keep the values from the bodies.
 template <class Num, int N>
 void SetMasses(ContactPoint<Num, N>& c, const Num* w, int stride) noexcept {
   const Num half = Num::Splat(0.5), one = Num::Splat(1.0), least = Num::Splat(1e-300);

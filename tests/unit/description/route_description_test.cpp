@@ -111,7 +111,7 @@ TEST(Route, WhatCannotBeIsSaidWithItsLine) {
             "drum)\n");
   EXPECT_EQ(error("[a, " + Drum("side: left") + ", b]"),
             "robot.yaml:7:29: error: pairs.route has a drum between its ends (use a `pulley` "
-            "there: a cable can only end on a drum)\n");
+            "there: drums are allowed only at the ends of a cable)\n");
   EXPECT_EQ(error("[a, " + Pulley("side: left, turns: 0.5") + ", b]"),
             "robot.yaml:7:85: error: pairs.route.turns of a pulley must be a whole number (give "
             "whole turns only: the shortest way around is added to them)\n");
