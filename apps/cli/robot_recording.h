@@ -26,7 +26,8 @@ class RobotRecording {
   static std::unique_ptr<RobotRecording> Start(RunFolder& folder,
                                                const std::vector<std::string>& cables,
                                                const TraceMetadata& metadata, Diagnostics& out);
-  /// Same, for a recording `host.h5` in the run of another trace. Use `Announcing` for that trace.
+  /// Same as `Start`, but for a recording `host.h5` in a run that begins with another trace. Wrap
+  /// the writer of the other trace with `Announcing`.
   static std::unique_ptr<RobotRecording> StartHost(RunFolder& folder,
                                                    const std::vector<std::string>& cables,
                                                    const TraceMetadata& metadata, Diagnostics& out);

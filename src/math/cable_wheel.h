@@ -209,7 +209,8 @@ void BeginOnWheels(PathPoint<V>* points, int count, Wheel<V>* wheels, const S* h
 
 /// Returns the middle of the arc on a wheel as an angle about its axis [rad], measured from `mark`,
 /// a direction normal to the axis. The middle separates the material of the spans before and after
-/// the wheel. Without contact, the middle is the point of the line nearest to the axis.
+/// the wheel. Without contact, returns the angle of the point nearest to the axis on the straight
+/// line between the path points before and after the wheel.
 template <class V>
 TAUT_INLINE typename Wheel<V>::S MiddleOf(const Wheel<V>& wheel, const V& mark,
                                           const PathPoint<V>* points) noexcept {

@@ -159,7 +159,8 @@ std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace)
   return PiecesOfRun(path, trace);
 }
 
-/// Completes an interrupted replacement in a folder. The caller must hold the folder's lock.
+/// Completes the replacement of the previous run in a folder if the writer of the new run was
+/// interrupted. The caller must hold the folder's lock.
 void FinishReplacementIn(const std::string& folder) {
   const std::string path = (fs::path(folder) / "trace.h5").string();
   const std::vector<Piece> all = UnnamedInputs(path);

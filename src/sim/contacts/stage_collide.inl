@@ -176,8 +176,8 @@ TAUT_INLINE void CollideMoving(const View& m, const Rows<W>& s, const Group& g, 
 
 /// Stage: collide.
 ///   reads   pos, bodies[]     writes  contacts[], touches[] (geometry and materials), clearance
-///   order   keys rising, in each body's slots and in each lane's list
-/// Returns a bit for each lane with more contacts than room.
+///   order   contacts by ascending key, in the slots of each body and in the list of each lane
+/// Returns one bit per lane; it is set if the lane has more contacts than its memory can hold.
 template <class W>
 uint32_t StageCollide(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, double step_s,
                       W since_last) noexcept {

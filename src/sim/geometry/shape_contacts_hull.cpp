@@ -117,7 +117,7 @@ struct Corner {
   int id;
 };
 
-/// As many corners as a face has, and one more per cut.
+/// Polygon with space for the corners of a face and one more corner per cut.
 struct Polygon {
   static constexpr int kMax = 2 * kMaxHullCorners;
   Corner corners[kMax];

@@ -68,9 +68,10 @@ W BendOf(const Scratch<W>& work, const JointTable& j, const JointRowTable& table
          RateOf(place, d, Before(a), Before(b));
 }
 
-/// Predicts the velocities of a body after the step under the forces of the previous step: adds its
-/// last velocity change; in the first step, the effect of the applied forces. Torques keep their
-/// lever arms.
+/// Predicts the velocities of a body after the step. Linear velocity: adds the change in the
+/// previous step; in the first step, the effect of the applied forces. Angular velocity: adds the
+/// effect of the applied torques, and of the torques of contacts and stiff cables in the previous
+/// step, without changing these torques.
 template <class W>
 Twist<W> Ahead(const Rows<W>& s, const BodyWork<W>& body, int b, bool moves, W h) noexcept {
   Twist<W> t = Free(body);
