@@ -25,7 +25,10 @@ namespace {
 bool FindStart(const ExperimentSpec& experiment, WorldBatch& batch, Diagnostics& out,
                const std::function<bool()>& go_on, std::optional<SettledStart>* settled) {
   if (experiment.start == StartKind::kAsDescribed) return true;
-  const std::string hint = "a mechanism or a slope may have no equilibrium; try as_described";
+  const std::string hint = fmt::format(
+      "a mechanism or a slope may have no equilibrium, and steps of {:g} s may be too "
+      "long: try a shorter step_s, or start: as_described",
+      experiment.step_s);
   const auto settle = [&](WorldBatch& which) {
     Unsettled before;
     if (settled) before = NoteUnsettled(which, experiment.step_s);
